@@ -1,0 +1,85 @@
+"""The structure: a clamped beam of rigid elements and joint springs (config/structures/*.yaml)."""
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from flexsurr.config.schema import Record
+
+Joint = Literal["in_plane", "out_of_plane", "torsion", "axial"]
+JOINTS: tuple[Joint, ...] = ("in_plane", "out_of_plane", "torsion", "axial")
+
+Positive = Annotated[float, Field(gt=0.0)]
+NotNegative = Annotated[float, Field(ge=0.0)]
+
+
+class Structure(Record):
+    """Properties of the lumped-mass beam, constant along the span; units are in the names.
+
+    Coordinates: x along the undeformed span, y to the left, z up. The order of `joints` in q is
+    always that of `JOINTS`, whatever the order in the file.
+    """
+
+    name: str
+    length_m: Positive
+    elements: Annotated[int, Field(ge=1)]
+    joints: Annotated[tuple[Joint, ...], Field(min_length=1)]
+    mass_per_length_kg_m: Positive
+    bending_stiffness_in_plane_N_m2: Positive | None = None
+    bending_stiffness_out_of_plane_N_m2: Positive | None = None
+    torsional_stiffness_N_m2: Positive | None = None
+    axial_stiffness_N: Positive | None = None
+    torsional_inertia_per_length_kg_m: NotNegative = 0.0
+    chord_m: Positive = 0.1
+    centre_of_gravity_offset_m: float = 0.0
+    clamp_psi_deg: float = 0.0
+    clamp_theta_deg: float = 0.0
+    clamp_phi_deg: float = 0.0
+    gravity_m_s2: NotNegative = 0.0
+    damping_in_plane_s: NotNegative = 0.0
+    damping_out_of_plane_s: NotNegative = 0.0
+    damping_torsion_s: NotNegative = 0.0
+    damping_axial_s: NotNegative = 0.0
+    clamp_spring: Literal["tip_deflection", "half_element"] = "tip_deflection"
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        if len(set(self.joints)) != len(self.joints):
+            raise ValueError("joints: each kind at most once")
+        for joint in self.joints:
+            if self.section_stiffness(joint) is None:
+                raise ValueError(f"{STIFFNESS_KEY[joint]}: needed for the joint {joint!r}")
+        if abs(self.centre_of_gravity_offset_m) > self.chord_m:
+            raise ValueError(
+                f"centre_of_gravity_offset_m: {self.centre_of_gravity_offset_m} lies beyond the chord "
+                f"({self.chord_m} m)"
+            )
+        return self
+
+    @property
+    def ordered_joints(self) -> tuple[Joint, ...]:
+        """The joint kinds of this structure in the order of their blocks in q."""
+        return tuple(joint for joint in JOINTS if joint in self.joints)
+
+    @property
+    def coordinates(self) -> int:
+        """n, the number of generalised coordinates: joint kinds times elements."""
+        return len(self.joints) * self.elements
+
+    def section_stiffness(self, joint: Joint) -> float | None:
+        """EI, GJ [N m²] or EA [N] that the springs of this joint kind come from."""
+        value: float | None = getattr(self, STIFFNESS_KEY[joint])
+        return value
+
+    def damping_s(self, joint: Joint) -> float:
+        """Rayleigh coefficient β [s] of this joint kind: C = K β."""
+        value: float = getattr(self, f"damping_{joint}_s")
+        return value
+
+
+STIFFNESS_KEY: dict[Joint, str] = {
+    "in_plane": "bending_stiffness_in_plane_N_m2",
+    "out_of_plane": "bending_stiffness_out_of_plane_N_m2",
+    "torsion": "torsional_stiffness_N_m2",
+    "axial": "axial_stiffness_N",
+}

@@ -1,0 +1,82 @@
+"""Hyperparameter sweeps: spaces of values, searched as a grid or by random draws (config/sweeps/*.yaml)."""
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from flexsurr.config.schema import Record
+from flexsurr.config.structure import Positive
+from flexsurr.config.study import Count
+
+Activation = Literal["elu", "tanh", "softplus", "silu", "squareplus", "half_log", "atan"]
+Architecture = Literal["mlp", "hnn", "polynomial"]
+Optimiser = Literal["adam", "adam_cosine", "lbfgs", "levenberg_marquardt", "least_squares"]
+
+
+class Trial(Record):
+    """The resolved parameters of one training run, apart from its data. Hashed into the run_id."""
+
+    architecture: Architecture
+    hidden: tuple[Count, ...] = ()
+    activation: Activation | None = None
+    degree: Count | None = None
+    optimiser: Optimiser = "levenberg_marquardt"
+    epochs: Count = 1000
+    batch_size: Count | None = None
+    learning_rate: Positive | None = None
+    precision: Literal["single", "double"] = "double"
+    patience: Count | None = None
+    time_limit_s: Positive | None = None
+    seed: Annotated[int, Field(ge=0)] = 0
+
+    @model_validator(mode="after")
+    def _fits_the_architecture(self) -> Self:
+        if self.architecture == "polynomial":
+            if self.degree is None or self.hidden or self.activation is not None:
+                raise ValueError("polynomial takes degree, and neither hidden nor activation")
+            if self.optimiser != "least_squares":
+                raise ValueError("polynomial takes the optimiser least_squares")
+        else:
+            if not self.hidden or self.activation is None or self.degree is not None:
+                raise ValueError(f"{self.architecture} takes hidden and activation, and no degree")
+            if self.optimiser == "least_squares":
+                raise ValueError(
+                    f"{self.architecture} is not linear in its weights: least_squares cannot fit it"
+                )
+        if self.optimiser in ("adam", "adam_cosine") and (
+            self.learning_rate is None or self.batch_size is None
+        ):
+            raise ValueError(f"{self.optimiser} takes learning_rate and batch_size")
+        return self
+
+
+class Space(Record):
+    """Values to combine; a key with several values is a dimension of the search."""
+
+    architecture: Architecture
+    hidden: Annotated[tuple[tuple[Count, ...], ...], Field(min_length=1)] | None = None
+    activation: Annotated[tuple[Activation, ...], Field(min_length=1)] | None = None
+    degree: Annotated[tuple[Count, ...], Field(min_length=1)] | None = None
+    optimiser: Annotated[tuple[Optimiser, ...], Field(min_length=1)] | None = None
+    epochs: Annotated[tuple[Count, ...], Field(min_length=1)] | None = None
+    batch_size: Annotated[tuple[Count, ...], Field(min_length=1)] | None = None
+    learning_rate: Annotated[tuple[Positive, ...], Field(min_length=1)] | None = None
+    precision: Annotated[tuple[Literal["single", "double"], ...], Field(min_length=1)] | None = None
+    patience: Annotated[tuple[Count, ...], Field(min_length=1)] | None = None
+    time_limit_s: Annotated[tuple[Positive, ...], Field(min_length=1)] | None = None
+    seed: Annotated[tuple[int, ...], Field(min_length=1)] | None = None
+
+
+class Sweep(Record):
+    """A search over one or more spaces: every combination, or `draws` random ones of each space."""
+
+    search: Literal["grid", "random"] = "grid"
+    draws: Count | None = None
+    seed: int = 0
+    spaces: Annotated[tuple[Space, ...], Field(min_length=1)]
+
+    @model_validator(mode="after")
+    def _draws_belong_to_random(self) -> Self:
+        if (self.search == "random") != (self.draws is not None):
+            raise ValueError("draws is given exactly when search is random")
+        return self

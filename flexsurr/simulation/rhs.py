@@ -1,0 +1,85 @@
+"""The one generic right-hand side ẋ = f(t, x) that every integrator calls.
+
+A *model* is a right-hand side with named states. A *kernel* is its compiled form: a NamedTuple of
+scalars and contiguous float64 arrays whose class says which equations they belong to. Integrators
+call `rhs(kernel, t, x, dx, work)` and are compiled once per class of kernel; floors above add their
+equations with `implements_rhs`, so that no integrator names a model. Resolving the equations by the
+class of an argument (and not by a function passed in) is what lets numba keep the machine code on
+disk between processes.
+"""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple, Protocol, runtime_checkable
+
+import numpy as np
+from numba import njit, types
+from numba.extending import overload
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+# Reassociation and contraction vectorise sums; the flags that assume finite numbers stay off, so
+# that a trajectory which leaves them is noticed.
+FLOATING_POINT = {"contract", "reassoc", "arcp", "nsz", "afn"}
+
+
+@runtime_checkable
+class Model(Protocol):
+    """A right-hand side in Python, with the names and units of its states."""
+
+    @property
+    def state_names(self) -> tuple[str, ...]: ...
+
+    @property
+    def state_units(self) -> tuple[str, ...]: ...
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Times [s] at which f jumps; an integrator starts anew at each."""
+        ...
+
+    def derivative(self, t: float, x: Array) -> Array:
+        """ẋ at time `t` [s] and state `x` (d,), in the units of the states per second."""
+        ...
+
+
+@runtime_checkable
+class CompiledModel(Model, Protocol):
+    """A model that compiled integrators can step: a kernel and the size of its workspace."""
+
+    @property
+    def kernel(self) -> NamedTuple: ...
+
+    @property
+    def work_size(self) -> int:
+        """Number of float64 values `rhs` may use as scratch."""
+        ...
+
+
+def rhs(kernel: Any, t: float, x: Array, dx: Array, work: Array) -> None:
+    """Write ẋ = f(t, x) into `dx` (d,). `work` is scratch of at least the model's `work_size`.
+
+    Callable from compiled code only; from Python call a model's `derivative` or `evaluate`.
+    """
+    raise TypeError(f"no equations are registered for {type(kernel).__name__}; call rhs from compiled code")
+
+
+def implements_rhs(kernel_class: type) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Register the decorated function (kernel, t, x, dx, work) -> None as `rhs` of `kernel_class`."""
+
+    def register(equations: Callable[..., None]) -> Callable[..., None]:
+        @overload(rhs, jit_options={"fastmath": FLOATING_POINT, "error_model": "numpy"})
+        def resolve(kernel, t, x, dx, work):
+            if isinstance(kernel, types.BaseNamedTuple) and kernel.instance_class is kernel_class:
+                return equations
+            return None
+
+        return equations
+
+    return register
+
+
+@njit(cache=True, error_model="numpy")
+def evaluate(kernel, t, x, dx, work):
+    """`rhs` as a call from Python: write ẋ into `dx`."""
+    rhs(kernel, t, x, dx, work)
