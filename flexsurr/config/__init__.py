@@ -1,0 +1,1 @@
+"""Typed configuration: what a person may write, checked before anything runs."""

@@ -1,4 +1,4 @@
-"""A study: one structure, its reduced model, dataset, sweep and evaluation (config/studies/*.yaml)."""
+"""A study: one structure, its reduced model, dataset, sweeps and evaluation (config/studies/*.yaml)."""
 
 from typing import Annotated, Literal, Self
 
@@ -90,6 +90,7 @@ class DatasetSettings(Record):
 
     @property
     def shards(self) -> int:
+        """Number of shards; the last may hold fewer trajectories."""
         return -(-self.trajectories // self.trajectories_per_shard)
 
 
@@ -130,13 +131,30 @@ class Statics(Record):
 
 
 class Study(Record):
-    """One study. Paths are relative to the folder that holds the Snakefile."""
+    """One study. Paths are relative to the folder that holds the Snakefile.
+
+    `sweeps` names each sweep of the study; the best surrogates of each stand side by side in the tables.
+    The one called `default` is the one the figures show.
+    """
 
     structure: str
-    sweep: str
+    sweeps: Annotated[dict[str, str], Field(min_length=1)]
     seed: Annotated[int, Field(ge=0)] = 2024
     variants: Annotated[tuple[Variant, ...], Field(min_length=1)] = ("hamiltonian", "as_printed")
     reduction: Reduction
     dataset: DatasetSettings = DatasetSettings()
     evaluation: EvaluationSettings = EvaluationSettings()
     statics: Statics = Statics()
+
+    @model_validator(mode="after")
+    def _names_are_plain(self) -> Self:
+        if "default" not in self.sweeps:
+            raise ValueError("sweeps: one of them is called default")
+        for name in self.sweeps:
+            if not name.isidentifier():
+                raise ValueError(
+                    f"sweeps: {name!r} is no plain name; allowed: letters, digits and underscores"
+                )
+        if len(set(self.variants)) != len(self.variants):
+            raise ValueError("variants: each at most once")
+        return self

@@ -1,8 +1,8 @@
 """Hyperparameter sweeps: spaces of values, searched as a grid or by random draws (config/sweeps/*.yaml)."""
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from flexsurr.config.schema import Record
 from flexsurr.config.structure import Positive
@@ -64,7 +64,14 @@ class Space(Record):
     precision: Annotated[tuple[Literal["single", "double"], ...], Field(min_length=1)] | None = None
     patience: Annotated[tuple[Count, ...], Field(min_length=1)] | None = None
     time_limit_s: Annotated[tuple[Positive, ...], Field(min_length=1)] | None = None
-    seed: Annotated[tuple[int, ...], Field(min_length=1)] | None = None
+    seed: Annotated[tuple[Annotated[int, Field(ge=0)], ...], Field(min_length=1)] | None = None
+
+    @field_validator("*", mode="before")
+    @classmethod
+    def _has_values(cls, value: Any) -> Any:
+        if value is None:
+            raise ValueError("a key without values; give a list of values, or leave the key out")
+        return value
 
 
 class Sweep(Record):

@@ -1,0 +1,105 @@
+"""Configuration errors a person can act on: one line a problem, with file, key, value and what is allowed."""
+
+import difflib
+import types
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, Union, get_args, get_origin
+
+from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
+
+Location = tuple[str | int, ...]
+LONGEST_VALUE = 80
+
+
+class ConfigurationError(Exception):
+    """What is wrong with a configuration; `problems` holds one line each."""
+
+    def __init__(self, problems: Iterable[str]) -> None:
+        self.problems = tuple(problems)
+        super().__init__("\n".join(self.problems))
+
+
+def describe(
+    error: ValidationError, record: type[BaseModel], origin: Callable[[Location], tuple[str, str]]
+) -> list[str]:
+    """One line for each problem of a failed validation of `record`.
+
+    `origin` tells for the location of a value the file it came from and its key in that file.
+    """
+    return [_line(details, record, origin) for details in error.errors(include_url=False)]
+
+
+def nearest(word: str, known: Sequence[str]) -> str:
+    """A hint at the known word most like `word`, or nothing."""
+    close = difflib.get_close_matches(word, known, n=1, cutoff=0.6)
+    return f"; did you mean {close[0]!r}?" if close else ""
+
+
+def key_path(location: Location) -> str:
+    """A location as a person writes it: spaces[0].activation."""
+    text = ""
+    for step in location:
+        text += f"[{step}]" if isinstance(step, int) else f".{step}" if text else step
+    return text
+
+
+def _line(
+    details: ErrorDetails, record: type[BaseModel], origin: Callable[[Location], tuple[str, str]]
+) -> str:
+    location = tuple(step for step in details["loc"] if step != "[key]")
+    file, key = origin(location)
+    value = details["input"]
+    where = f"{file}: {key}" if key else file
+    match details["type"]:
+        case "extra_forbidden":
+            fields = _fields_at(record, location[:-1])
+            return (
+                f"{where}: unknown key (value {_short(value)}){nearest(str(location[-1]), fields)}; "
+                f"allowed: {', '.join(fields)}"
+            )
+        case "missing":
+            return f"{where}: missing; a value is needed"
+        case "value_error":
+            # A rule between the keys of a record: its own words name them.
+            return f"{where}: {details['msg'].removeprefix('Value error, ')}{_shown(value)}"
+        case "literal_error":
+            expected = str(details["ctx"]["expected"])
+            known = [word.strip("' ") for part in expected.split(",") for word in part.split(" or ")]
+            return f"{where}: {_short(value)} is not allowed{nearest(str(value), known)}; allowed: {expected}"
+        case "too_short":
+            return f"{where}: {_short(value)} is empty; allowed: at least one value"
+        case "tuple_type" | "list_type":
+            return f"{where}: {_short(value)} is not allowed; allowed: a list of values in brackets"
+        case "model_type" | "model_attributes_type" | "dict_type":
+            return f"{where}: {_short(value)} is not allowed; allowed: keys with values"
+        case _:
+            allowed = details["msg"].removeprefix("Input should be ").removeprefix("a valid ")
+            return f"{where}: {_short(value)} is not allowed; allowed: {allowed}"
+
+
+def _short(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= LONGEST_VALUE else text[:LONGEST_VALUE] + "…"
+
+
+def _shown(value: Any) -> str:
+    return "" if isinstance(value, dict) and len(repr(value)) > LONGEST_VALUE else f" (value {_short(value)})"
+
+
+def _fields_at(record: type[BaseModel], location: Location) -> tuple[str, ...]:
+    """Names of the fields of the record that stands at `location` within `record`."""
+    for step in location:
+        if isinstance(step, str) and step in record.model_fields:
+            nested = _record_in(record.model_fields[step].annotation)
+            if nested is not None:
+                record = nested
+    return tuple(record.model_fields)
+
+
+def _record_in(annotation: Any) -> type[BaseModel] | None:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return annotation
+    if get_origin(annotation) is None and not isinstance(annotation, types.UnionType | type(Union)):
+        return None
+    return next((found for part in get_args(annotation) if (found := _record_in(part))), None)

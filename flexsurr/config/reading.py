@@ -1,0 +1,56 @@
+"""Reading a YAML file of keys and values, with errors that name the file and the line."""
+
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from flexsurr.config.errors import ConfigurationError
+
+
+class _UniqueKeys(yaml.SafeLoader):
+    """YAML's safe loader, except that a key given twice is an error and not silently the last one."""
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
+        """The mapping of `node`; raises ConstructorError for a key that comes twice."""
+        seen = set()
+        for key_node, _ in node.value:
+            if not isinstance(key_node, yaml.ScalarNode):
+                continue
+            key = (key_node.tag, key_node.value)
+            if key in seen:
+                raise yaml.constructor.ConstructorError(
+                    problem=f"key {key_node.value!r} is given twice", problem_mark=key_node.start_mark
+                )
+            seen.add(key)
+        return super().construct_mapping(node, deep)
+
+
+def read_yaml(path: Path, shown: str | None = None) -> dict[str, Any]:
+    """The keys and values of the YAML file at `path`, named `shown` in errors.
+
+    Raises ConfigurationError if the file is missing, is not YAML, or holds something else than keys
+    with values.
+    """
+    name = shown or str(path)
+    try:
+        text = path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        raise ConfigurationError([f"{name}: no such file (looked for {path.absolute()})"]) from None
+    except IsADirectoryError:
+        raise ConfigurationError([f"{name}: is a folder; a YAML file is needed"]) from None
+    except UnicodeDecodeError as error:
+        raise ConfigurationError([f"{name}: is not text in UTF-8 (byte {error.start})"]) from None
+    try:
+        # The loader is SafeLoader with one more check.
+        content = yaml.load(text, Loader=_UniqueKeys)
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark
+        line = f", line {mark.line + 1}, column {mark.column + 1}" if mark else ""
+        what = " ".join(part for part in (error.context, error.problem) if part)
+        raise ConfigurationError([f"{name}{line}: is not YAML: {what}"]) from None
+    except yaml.YAMLError as error:
+        raise ConfigurationError([f"{name}: is not YAML: {' '.join(str(error).split())}"]) from None
+    if not isinstance(content, dict) or not all(isinstance(key, str) for key in content):
+        raise ConfigurationError([f"{name}: holds {content!r:.60}; allowed: keys with values"])
+    return content

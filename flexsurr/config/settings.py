@@ -1,0 +1,164 @@
+"""All configuration of one invocation: config/config.yaml, and the files it leads to, checked together."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import Field
+
+from flexsurr.config.errors import ConfigurationError
+from flexsurr.config.merging import Source, build, merge
+from flexsurr.config.reading import read_yaml
+from flexsurr.config.schema import Record
+from flexsurr.config.structure import Structure
+from flexsurr.config.study import Count, Study
+from flexsurr.config.sweep import Sweep
+
+STUDIES = "config/studies"
+
+
+class Tracking(Record):
+    """Where runs are recorded for the page on which they are compared."""
+
+    uri: str | None = None
+
+
+class Timing(Record):
+    """How jobs that measure time run: cores they keep others off (all when none are given)."""
+
+    cores: Count | None = None
+
+
+class Settings(Record):
+    """config/config.yaml. `overrides` holds values that replace those of a study's file."""
+
+    results: Annotated[str, Field(min_length=1)] = "results"
+    studies: Annotated[tuple[str, ...], Field(min_length=1)]
+    tracking: Tracking = Tracking()
+    timing: Timing = Timing()
+    overrides: dict[str, dict[str, Any]] = Field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class ResolvedStudy:
+    """A study with everything its file refers to, and where its sweeps came from."""
+
+    name: str
+    study: Study
+    structure: Structure
+    sweeps: Mapping[str, Sweep]
+
+
+@dataclass(frozen=True)
+class Configuration:
+    """Everything that configuration files say, checked."""
+
+    settings: Settings
+    studies: tuple[ResolvedStudy, ...]
+
+
+def load(root: Path, files: Sequence[str], effective: Mapping[str, Any] | None = None) -> Configuration:
+    """Read and check `files` (later ones on top) below the folder `root`, and all they lead to.
+
+    `effective` is the merged result where somebody else has merged already and may have added values
+    of a command line. Raises ConfigurationError with every problem found.
+    """
+    sources = [Source(file, read_yaml(root / file, file)) for file in files]
+    if effective is not None:
+        known: dict[str, Any] = {}
+        for source in sources:
+            known = merge(known, source.values)
+        if added := _difference(effective, known):
+            sources.append(Source("--config", added))
+    settings = build(Settings, sources)
+    problems: list[str] = []
+    studies = []
+    for name in settings.studies:
+        try:
+            studies.append(_load_study(root, name, sources))
+        except ConfigurationError as error:
+            problems += error.problems
+    for name in settings.overrides:
+        if not (root / STUDIES / f"{name}.yaml").is_file():
+            problems.append(
+                f"{_holder(sources, ('overrides', name))}: overrides.{name}: no such study; "
+                f"allowed: {_study_names(root)}"
+            )
+    if problems:
+        raise ConfigurationError(dict.fromkeys(problems))
+    return Configuration(settings, tuple(studies))
+
+
+def _load_study(root: Path, name: str, sources: Sequence[Source]) -> ResolvedStudy:
+    file = f"{STUDIES}/{name}.yaml"
+    if not (root / file).is_file():
+        raise ConfigurationError(
+            [f"{_holder(sources, ('studies',))}: studies: {name!r} is unknown; allowed: {_study_names(root)}"]
+        )
+    study_sources = [Source(file, read_yaml(root / file, file))]
+    for source in sources:
+        values = source.values.get("overrides")
+        if isinstance(values, Mapping) and isinstance(values.get(name), Mapping):
+            study_sources.append(Source(source.file, values[name], ("overrides", name)))
+    study = build(Study, study_sources)
+
+    def read(key: tuple[str, ...], path: str) -> dict[str, Any]:
+        if not (root / path).is_file():
+            raise ConfigurationError(
+                [f"{_holder(study_sources, key)}: {'.'.join(key)}: {path!r} is no file; allowed: a YAML file"]
+            )
+        return read_yaml(root / path, path)
+
+    problems: list[str] = []
+    structure: Structure | None = None
+    sweeps: dict[str, Sweep] = {}
+    try:
+        structure = build(Structure, [Source(study.structure, read(("structure",), study.structure))])
+    except ConfigurationError as error:
+        problems += error.problems
+    for sweep, path in study.sweeps.items():
+        try:
+            sweeps[sweep] = build(Sweep, [Source(path, read(("sweeps", sweep), path))])
+        except ConfigurationError as error:
+            problems += error.problems
+    if structure is None or problems:
+        raise ConfigurationError(problems)
+    modes, most = study.reduction.modes, structure.coordinates
+    if modes > most:
+        holder = _holder(study_sources, ("reduction", "modes"))
+        raise ConfigurationError(
+            [
+                f"{holder}: reduction.modes: {modes} is not allowed; allowed: 1 to {most}, "
+                f"the coordinates of {study.structure}"
+            ]
+        )
+    return ResolvedStudy(name, study, structure, sweeps)
+
+
+def _holder(sources: Sequence[Source], key: Sequence[str]) -> str:
+    """The last file that gives the value of `key`."""
+    for source in reversed(sources):
+        values: Any = source.values
+        for step in key:
+            values = values.get(step) if isinstance(values, Mapping) else None
+        if values is not None:
+            return source.file
+    return sources[0].file
+
+
+def _study_names(root: Path) -> str:
+    return ", ".join(sorted(path.stem for path in (root / STUDIES).glob("*.yaml")))
+
+
+def _difference(over: Mapping[str, Any], under: Mapping[str, Any]) -> dict[str, Any]:
+    """The values of `over` that `under` has not."""
+    changed: dict[str, Any] = {}
+    for key, value in over.items():
+        old = under.get(key)
+        if isinstance(value, Mapping) and isinstance(old, Mapping):
+            if difference := _difference(value, old):
+                changed[key] = difference
+        elif key not in under or value != old:
+            changed[key] = value
+    return changed
