@@ -1,0 +1,33 @@
+"""Cost, accuracy and energy of any model against any other: models in, DataFrames out.
+
+One function per file of results/evaluation/<study>/:
+
+| file | function |
+|---|---|
+| statics.parquet | `static_tip` |
+| frequencies.parquet | `natural_frequencies` |
+| validation.parquet | `validation_table` |
+| response-<variant>-<response>.parquet | `response_table` |
+| energy-<variant>.parquet | `energy_table` |
+| cost-<variant>-<response>.parquet | `cost_table` |
+
+and `long_response_errors`, by which training ranks its runs. `surrogates` is always a mapping from the
+name of an architecture to its fitted surrogate.
+"""
+
+from flexsurr.evaluation.cost import cost_table
+from flexsurr.evaluation.energy import energy_table
+from flexsurr.evaluation.responses import response_table
+from flexsurr.evaluation.selection import long_response_errors
+from flexsurr.evaluation.statics import natural_frequencies, static_tip
+from flexsurr.evaluation.validation import validation_table
+
+__all__ = [
+    "cost_table",
+    "energy_table",
+    "long_response_errors",
+    "natural_frequencies",
+    "response_table",
+    "static_tip",
+    "validation_table",
+]

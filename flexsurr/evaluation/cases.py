@@ -1,0 +1,112 @@
+"""The simulations by which models are timed and judged: initial states, loads, and their tight solutions."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from flexsurr.beam import ModalBasis, SineTipForce, draw_initial_conditions, loaded, reduced_order
+from flexsurr.config.study import Integrator, Study, TipForce, Variant
+from flexsurr.simulation import simulate
+from flexsurr.simulation.rhs import Array, Model
+
+Response = Literal["free", "forced"]
+
+TIGHT = Integrator(method="dop853", rtol=1e-12, atol=1e-14)
+"""How every reference solution is integrated: far below any error that the tables show."""
+
+# A trajectory is drawn from its number. Training uses the numbers from 0; these lie out of reach, and
+# apart, so that a model is not judged by the responses that selected it.
+FIRST_SELECTION_CASE = 1_000_000
+FIRST_EVALUATION_CASE = 2_000_000
+
+
+@dataclass(frozen=True)
+class Case:
+    """One simulation: its number, initial state x0 (2r,), and tip force (None: free response)."""
+
+    number: int
+    x0: Array
+    load: SineTipForce | None = None
+
+    @property
+    def free_from_s(self) -> float:
+        """Time [s] from which no load acts."""
+        return 0.0 if self.load is None else float(self.load.end_s)
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A tight solution: times t (m,), states x (m, 2r), tip (m, 3) [m], largest tip displacement [m]."""
+
+    case: Case
+    t: Array
+    x: Array
+    tip: Array
+    peak_m: float
+
+
+def free_cases(basis: ModalBasis, study: Study, first: int, count: int) -> list[Case]:
+    """Free responses from random initial states, numbers `first` to `first + count − 1`."""
+    states = draw_initial_conditions(basis, study.dataset.initial_conditions, study.seed, first, count)
+    return [Case(number=k, x0=np.array(x0)) for k, x0 in enumerate(states)]
+
+
+def forced_cases(basis: ModalBasis, study: Study, first: int, count: int) -> list[Case]:
+    """Responses from rest to the tip force, each acting from 0 to a random end [0, longest_s)."""
+    force = study.evaluation.force
+    rest = np.zeros(2 * basis.modes.shape[1])
+    ends = (
+        np.random.default_rng([study.seed, first + k]).uniform(0.0, force.longest_s) for k in range(count)
+    )
+    return [Case(number=k, x0=rest.copy(), load=tip_force(force, end_s)) for k, end_s in enumerate(ends)]
+
+
+def evaluation_cases(basis: ModalBasis, study: Study, response: Response) -> list[Case]:
+    """The simulations of one response of the study, the same for every model and variant."""
+    draw = free_cases if response == "free" else forced_cases
+    return draw(basis, study, FIRST_EVALUATION_CASE, study.evaluation.simulations)
+
+
+def tip_force(force: TipForce, end_s: float) -> SineTipForce:
+    """The study's tip force, acting from 0 to `end_s` [s]."""
+    return SineTipForce(
+        amplitude_N=force.amplitude_N,
+        frequency_rad_s=force.frequency_rad_s,
+        direction=force.direction,
+        start_s=0.0,
+        end_s=end_s,
+    )
+
+
+def sample_times(duration_s: float, step_s: float) -> Array:
+    """0, step, …, duration [s], both ends included."""
+    return np.linspace(0.0, duration_s, max(int(round(duration_s / step_s)), 1) + 1)
+
+
+def under(model: Model, basis: ModalBasis, case: Case, implementation: str) -> Model:
+    """The model with the load of the case: the paper's augmented structure (Fig. 11), or itself."""
+    return model if case.load is None else loaded(model, basis, case.load, implementation)
+
+
+def reference_solution(basis: ModalBasis, variant: Variant, case: Case, t: Array) -> Reference:
+    """The reduced-order model of `variant`, integrated tightly.
+
+    Raises ArithmeticError if the reference itself does not reach the end: then nothing can be judged.
+    """
+    model = reduced_order(basis, variant, "compiled")
+    trajectory = simulate(under(model, basis, case, "compiled"), t, case.x0, TIGHT)
+    if not trajectory.completed:
+        raise ArithmeticError(f"reference {variant}, simulation {case.number}: {trajectory.reason}")
+    tip = model.tip(trajectory.x)
+    at_rest = model.tip(np.zeros_like(case.x0))
+    peak_m = float(np.linalg.norm(tip - at_rest, axis=1).max())
+    return Reference(case=case, t=t, x=trajectory.x, tip=tip, peak_m=peak_m)
+
+
+def reference_solutions(
+    basis: ModalBasis, variant: Variant, cases: list[Case], t: Array
+) -> Iterator[Reference]:
+    """One tight solution per case."""
+    return (reference_solution(basis, variant, case, t) for case in cases)

@@ -1,0 +1,63 @@
+"""Every model of a study in each of its implementations, ready to be simulated."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from flexsurr.beam import ModalBasis, reduced_order
+from flexsurr.config.study import Variant
+from flexsurr.evaluation.cases import Case, under
+from flexsurr.simulation.rhs import Array, Model
+from flexsurr.surrogates import compiled
+
+Implementation = Literal["described", "numpy", "compiled", "torch"]
+
+# A load has no torch form and needs none: the network runs in torch, the load beside it in NumPy.
+LOAD_IMPLEMENTATION: dict[str, str] = {"torch": "numpy"}
+
+
+@dataclass(frozen=True)
+class Contender:
+    """A model in one implementation, under the name that tables and figures show.
+
+    `own_energy` is the model's own Hamiltonian (k, 2r) -> (k,) [J], or None where it has none.
+    """
+
+    model: str
+    implementation: Implementation
+    field: Model
+    own_energy: Any = None
+
+    def under(self, basis: ModalBasis, case: Case) -> Model:
+        """The field with the load of the case."""
+        return under(
+            self.field, basis, case, LOAD_IMPLEMENTATION.get(self.implementation, self.implementation)
+        )
+
+    def energy(self, x: Array) -> Array | None:
+        """The model's own energy (k,) [J] at states x (k, 2r)."""
+        return None if self.own_energy is None else self.own_energy(x)
+
+
+def contenders(
+    basis: ModalBasis, variant: Variant, surrogates: Mapping[str, Any], with_torch: bool = False
+) -> list[Contender]:
+    """The reduced model described, numpy and compiled; each surrogate numpy, compiled and, on request, torch.
+
+    `surrogates` maps an architecture's name to its fitted surrogate. A polynomial has no torch form.
+    """
+    implementations: tuple[Implementation, ...] = ("described", "numpy", "compiled")
+    found = []
+    for implementation in implementations:
+        rom = reduced_order(basis, variant, implementation)
+        found.append(Contender("rom", implementation, rom, rom.energy))
+    for name, surrogate in surrogates.items():
+        own_energy = getattr(surrogate, "energy", None)
+        found.append(Contender(name, "numpy", surrogate, own_energy))
+        found.append(Contender(name, "compiled", compiled(surrogate), own_energy))
+        if with_torch and name != "polynomial":
+            # torch takes seconds to import, and nothing else here needs it
+            from flexsurr.training import torch_model
+
+            found.append(Contender(name, "torch", torch_model(surrogate), own_energy))
+    return found

@@ -1,0 +1,150 @@
+"""What a response costs and what it is worth: every model, implementation and integrator."""
+
+import logging
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import pandas as pd
+
+from flexsurr.beam import ModalBasis, reduced_order
+from flexsurr.config.study import EvaluationSettings, Integrator, Study, Variant
+from flexsurr.evaluation.accuracy import tip_error
+from flexsurr.evaluation.cases import Reference, Response, evaluation_cases, reference_solutions, sample_times
+from flexsurr.evaluation.contenders import Contender, contenders
+from flexsurr.evaluation.energy import drift_percent
+from flexsurr.evaluation.published import beside
+from flexsurr.evaluation.ratios import COST_COLUMNS, PAPERS_INTEGRATOR, summary
+from flexsurr.evaluation.timing import one_thread, wall_time
+from flexsurr.simulation import Trajectory, simulate
+from flexsurr.simulation.rhs import Array, Model
+
+log = logging.getLogger(__name__)
+
+# What interprets Python at every call takes seconds a simulation: these run the first few simulations only.
+SLOW_IMPLEMENTATIONS = ("described", "torch")
+
+# Where Python steps, a simulation takes so many calls that one run of it is a steady measure.
+STEPS_IN_PYTHON = "scipy_"
+
+
+@dataclass(frozen=True)
+class Setup:
+    """One row of the table to be: a model in one implementation, with one integrator."""
+
+    contender: Contender
+    integrator: Integrator
+
+    def simulations(self, settings: EvaluationSettings) -> int:
+        """How many of the study's simulations this row runs."""
+        slow = self.contender.implementation in SLOW_IMPLEMENTATIONS
+        return min(settings.described_simulations, settings.simulations) if slow else settings.simulations
+
+    def repeats(self, settings: EvaluationSettings) -> int:
+        """How often each simulation is timed."""
+        return 1 if self.integrator.method.startswith(STEPS_IN_PYTHON) else settings.repeats
+
+
+def cost_table(
+    study_name: str,
+    study: Study,
+    basis: ModalBasis,
+    variant: Variant,
+    response: Response,
+    surrogates: Mapping[str, Any],
+) -> pd.DataFrame:
+    """The rows of cost.csv for one variant and response: `measurements`, summarised by `ratios.summary`.
+
+    `surrogates` maps architectures to fitted surrogates. Run it alone on the machine.
+    """
+    frame = summary(measurements(study, basis, variant, response, surrogates))
+    frame.insert(0, "study", study_name)
+    frame.insert(1, "variant", variant)
+    frame.insert(2, "response", response)
+    frame = beside(frame)
+    return frame[[*COST_COLUMNS, *frame.columns.difference(COST_COLUMNS, sort=False)]]
+
+
+def setups(models: Iterable[Contender], integrators: Iterable[Integrator]) -> Iterator[Setup]:
+    """Every model with the paper's integrator; the compiled ones also with each of `integrators`."""
+    compiled_too = [integrator for integrator in integrators if integrator != PAPERS_INTEGRATOR]
+    for contender in models:
+        yield Setup(contender, PAPERS_INTEGRATOR)
+        if contender.implementation == "compiled":
+            yield from (Setup(contender, integrator) for integrator in compiled_too)
+
+
+def measurements(
+    study: Study,
+    basis: ModalBasis,
+    variant: Variant,
+    response: Response,
+    surrogates: Mapping[str, Any],
+) -> pd.DataFrame:
+    """One row per simulation of every model × implementation × integrator.
+
+    Columns: model, implementation, integrator, simulation, wall_s, completed; and over the samples
+    that were reached tip_error_percent, tip_error_2s_percent, phase_lag_s, energy_drift_percent (of
+    the reference's exact Hamiltonian) and own_energy_drift_percent (of the model's own Hamiltonian, NaN
+    where it has none), both from the end of the load on.
+    """
+    settings = study.evaluation
+    t = sample_times(settings.duration_s, settings.output_step_s)
+    cases = evaluation_cases(basis, study, response)
+    references = list(reference_solutions(basis, variant, cases, t))
+    rows = []
+    with one_thread():
+        for setup in setups(contenders(basis, variant, surrogates, with_torch=True), settings.integrators):
+            timed = [
+                _measure(setup, basis, variant, reference, setup.repeats(settings))
+                for reference in references[: setup.simulations(settings)]
+            ]
+            rows += timed
+            log.info(
+                "%s %s: %s, %d simulations of %g s at %.3g s each, worst tip error %.3g %%, %d diverged",
+                variant,
+                response,
+                " ".join((timed[0]["model"], timed[0]["implementation"], timed[0]["integrator"])),
+                len(timed),
+                settings.duration_s,
+                sum(row["wall_s"] for row in timed) / len(timed),
+                max(row["tip_error_percent"] for row in timed),
+                sum(not row["completed"] for row in timed),
+            )
+    return pd.DataFrame(rows)
+
+
+def _measure(
+    setup: Setup, basis: ModalBasis, variant: Variant, reference: Reference, repeats: int
+) -> dict[str, Any]:
+    """Time one simulation and judge its trajectory."""
+    model = setup.contender.under(basis, reference.case)
+    # the first steps load or compile what the timed ones use
+    _run(model, reference.t[:2], reference.case.x0, setup.integrator)
+    trajectory, wall_s = wall_time(
+        partial(_run, model, reference.t, reference.case.x0, setup.integrator), repeats
+    )
+    exact = reduced_order(basis, variant, "numpy")
+    own = setup.contender.energy(trajectory.x)
+    error = tip_error(reference, exact.tip(trajectory.x))
+    free_from_s = reference.case.free_from_s
+    return {
+        "model": setup.contender.model,
+        "implementation": setup.contender.implementation,
+        "integrator": setup.integrator.label,
+        "simulation": reference.case.number,
+        "wall_s": wall_s,
+        "completed": trajectory.completed,
+        "tip_error_percent": error.whole_percent,
+        "tip_error_2s_percent": error.short_percent,
+        "phase_lag_s": error.phase_lag_s,
+        "energy_drift_percent": drift_percent(exact.energy(trajectory.x), trajectory.t, free_from_s),
+        "own_energy_drift_percent": (
+            float("nan") if own is None else drift_percent(own, trajectory.t, free_from_s)
+        ),
+    }
+
+
+def _run(model: Model, t: Array, x0: Array, integrator: Integrator) -> Trajectory:
+    return simulate(model, t, x0, integrator)

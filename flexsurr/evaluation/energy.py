@@ -1,0 +1,88 @@
+"""Energy: how far a free response strays from the energy it started with."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from flexsurr.beam import ModalBasis, reduced_order
+from flexsurr.config.study import Integrator, Study, Variant
+from flexsurr.evaluation.cases import Case, evaluation_cases, sample_times
+from flexsurr.evaluation.contenders import Contender, contenders
+from flexsurr.simulation import simulate
+from flexsurr.simulation.rhs import Array
+
+NOT_DRIFTING = Integrator(method="gauss_legendre_6", step_s=2.5e-3)
+"""Symplectic, order 6: its own drift lies far below that of any network (Fig. 13)."""
+
+SCIPY_DEFAULTS: tuple[Integrator, ...] = tuple(
+    Integrator(method=method) for method in ("scipy_radau", "scipy_rk45", "scipy_dop853", "scipy_lsoda")
+)
+
+ENERGY_COLUMNS = ("panel", "variant", "model", "integrator", "t_s", "energy_J", "drift_percent")
+
+
+def relative_drift_percent(energy: Array) -> Array:
+    """|H(t) − H(0)|/|H(0)| in percent, (k,), of `energy` (k,) [J]."""
+    return np.asarray(100.0 * np.abs(energy - energy[0]) / np.abs(energy[0]))
+
+
+def drift_percent(energy: Array, t: Array, free_from_s: float = 0.0) -> float:
+    """The largest relative drift [%] from the first sample at which no load acts any more.
+
+    NaN where no two samples lie after `free_from_s` [s]: there is nothing to compare.
+    """
+    free = energy[t[: energy.size] >= free_from_s]
+    return float(relative_drift_percent(free).max()) if free.size > 1 else float("nan")
+
+
+def energy_table(
+    study: Study, basis: ModalBasis, variant: Variant, surrogates: Mapping[str, Any]
+) -> pd.DataFrame:
+    """Energy against time in the first free response of the study (Fig. 13); columns `ENERGY_COLUMNS`.
+
+    Panel "models": the reference and each surrogate with an integrator that does not drift. Panel
+    "integrators": the exact field with each integrator of the study and SciPy's at their defaults.
+    The energy is the reference's exact Hamiltonian along the trajectory [J], whatever the model: the
+    only one that is the same quantity for all. A trajectory that ends early ends its rows.
+    """
+    case = evaluation_cases(basis, study, "free")[0]
+    compiled = [c for c in contenders(basis, variant, surrogates) if c.implementation == "compiled"]
+    exact = [c for c in compiled if c.model == "rom"]
+    integrators = (NOT_DRIFTING, *study.evaluation.integrators, *SCIPY_DEFAULTS)
+    frames = [_energy(basis, study, variant, case, compiled, (NOT_DRIFTING,), "models")]
+    frames.append(_energy(basis, study, variant, case, exact, integrators, "integrators"))
+    return pd.concat(frames, ignore_index=True)
+
+
+def _energy(
+    basis: ModalBasis,
+    study: Study,
+    variant: Variant,
+    case: Case,
+    models: Sequence[Contender],
+    integrators: Sequence[Integrator],
+    panel: str,
+) -> pd.DataFrame:
+    t = sample_times(study.evaluation.duration_s, study.evaluation.output_step_s)
+    hamiltonian = reduced_order(basis, variant, "numpy").energy
+    frames = []
+    for contender in models:
+        for integrator in integrators:
+            trajectory = simulate(contender.under(basis, case), t, case.x0, integrator)
+            energy = hamiltonian(trajectory.x)
+            frames.append(
+                pd.DataFrame(
+                    {
+                        "panel": panel,
+                        "variant": variant,
+                        "model": contender.model,
+                        "integrator": integrator.label,
+                        "t_s": trajectory.t,
+                        "energy_J": energy,
+                        "drift_percent": relative_drift_percent(energy),
+                    }
+                )
+            )
+    return pd.concat(frames, ignore_index=True)[list(ENERGY_COLUMNS)]

@@ -1,0 +1,52 @@
+"""The error of long free responses: what surrogates are chosen by."""
+
+import math
+import statistics
+from typing import Any
+
+from flexsurr.beam import ModalBasis, reduced_order
+from flexsurr.config.study import Integrator, Study, Variant
+from flexsurr.evaluation.accuracy import tip_error
+from flexsurr.evaluation.cases import FIRST_SELECTION_CASE, free_cases, reference_solutions, sample_times
+from flexsurr.evaluation.energy import drift_percent
+from flexsurr.simulation import simulate
+from flexsurr.surrogates import compiled
+
+INTEGRATOR = Integrator(method="dop853_fixed", step_s=0.01)
+
+
+def long_response_errors(
+    study: Study, basis: ModalBasis, variant: Variant, surrogate: Any
+) -> dict[str, float | int | None]:
+    """Errors of `study.evaluation.long_responses` free responses from states no training has seen.
+
+    Keys as in a run's metrics: long_response_error_percent_worst and _median (largest tip error over
+    the reference's largest tip displacement), energy_drift_percent (worst, of the reference's exact
+    Hamiltonian along the surrogate's trajectory) and diverged, the number of responses that did not
+    reach their end. A figure that has no finite value is None; a diverged response counts as the worst.
+    """
+    settings = study.evaluation
+    t = sample_times(settings.duration_s, settings.output_step_s)
+    model = compiled(surrogate)
+    exact = reduced_order(basis, variant, "numpy")
+    errors, drifts, diverged = [], [], 0
+    cases = free_cases(basis, study, FIRST_SELECTION_CASE, settings.long_responses)
+    for reference in reference_solutions(basis, variant, cases, t):
+        trajectory = simulate(model, t, reference.case.x0, INTEGRATOR)
+        if trajectory.completed:
+            errors.append(tip_error(reference, exact.tip(trajectory.x)).whole_percent)
+            drifts.append(drift_percent(exact.energy(trajectory.x), t))
+        else:
+            errors.append(math.inf)
+            drifts.append(math.inf)
+            diverged += 1
+    return {
+        "long_response_error_percent_worst": _finite(max(errors)),
+        "long_response_error_percent_median": _finite(statistics.median(errors)),
+        "energy_drift_percent": _finite(max(drifts)),
+        "diverged": diverged,
+    }
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None

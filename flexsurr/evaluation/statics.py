@@ -1,0 +1,117 @@
+"""Static deflection under dead tip loads, and natural frequencies, each beside what it is judged by."""
+
+import numpy as np
+import pandas as pd
+from scipy.optimize import brentq, root
+
+from flexsurr.beam import (
+    DeadTipForce,
+    EquilibriumNotFound,
+    ModalBasis,
+    elastica_tip,
+    find_equilibrium,
+    loaded,
+    natural_modes,
+    reduced_order,
+    tip_position,
+)
+from flexsurr.config.structure import Structure
+from flexsurr.config.study import Study
+from flexsurr.evaluation.published import FREQUENCIES_RAD_S
+from flexsurr.simulation.rhs import Array, Model
+
+STATIC_COLUMNS = ("load_N", "x_exact_m", "z_exact_m", "x_fom_m", "z_fom_m", "x_rom_m", "z_rom_m")
+FREQUENCY_COLUMNS = (
+    "structure",
+    "mode",
+    "fom_rad_s",
+    "rom_rad_s",
+    "published_fom_rad_s",
+    "published_rom_rad_s",
+    "exact_rad_s",
+)
+
+
+def static_tip(study: Study, basis: ModalBasis) -> pd.DataFrame:
+    """Tip position under dead tip loads along +z: exact elastica, full order, reduced order (Fig. 8).
+
+    Columns `STATIC_COLUMNS`, one row per load, in the clamp's frame [m]. The exact curve is that of an
+    inextensible beam that bends out of plane only and weighs nothing; for any other structure the
+    columns of the exact curve are NaN. Raises EquilibriumNotFound where either model has none.
+    """
+    structure = basis.structure
+    rows = []
+    state = np.zeros(2 * basis.modes.shape[1])
+    for load_N in sorted(study.statics.tip_loads_N):
+        force = DeadTipForce(force_N=(0.0, 0.0, load_N))
+        fom = tip_position(structure, find_equilibrium(structure, force))
+        model = loaded(reduced_order(basis, "hamiltonian", "numpy"), basis, force, "numpy")
+        state = _rest(model, state, load_N)
+        rom = reduced_order(basis, "hamiltonian", "numpy").tip(state)
+        x_exact, z_exact = _exact_tip(structure, load_N)
+        rows.append((load_N, x_exact, z_exact, fom[0], fom[2], rom[0], rom[2]))
+    return pd.DataFrame(rows, columns=list(STATIC_COLUMNS)).astype(float)
+
+
+def natural_frequencies(basis: ModalBasis) -> pd.DataFrame:
+    """Natural frequencies [rad/s] about the basis' equilibrium: full and reduced order (Table 3).
+
+    Columns `FREQUENCY_COLUMNS`, one row per mode of the full-order model. NaN where the reduced model
+    has no such mode, nothing is published, or no exact value is known. The exact ones are those of the
+    straight clamped Euler-Bernoulli beam that bends out of plane only.
+    """
+    structure = basis.structure
+    fom, _ = natural_modes(structure, basis.equilibrium)
+    published_fom, published_rom = FREQUENCIES_RAD_S.get(structure.name, ((), ()))
+    frame = pd.DataFrame({"structure": structure.name, "mode": np.arange(1, fom.size + 1), "fom_rad_s": fom})
+    for name, values in (
+        ("rom_rad_s", basis.omega_rad_s),
+        ("published_fom_rad_s", published_fom),
+        ("published_rom_rad_s", published_rom),
+        ("exact_rad_s", _exact_frequencies(structure, fom.size)),
+    ):
+        frame[name] = pd.Series(np.asarray(values, dtype=float)).reindex(frame.index)
+    return frame[list(FREQUENCY_COLUMNS)]
+
+
+def _rest(model: Model, start: Array, load_N: float) -> Array:
+    """The state (2r,) at rest in which ẋ = 0, sought from `start`: eq. 8 for any model."""
+    r = start.size // 2
+    zeros = np.zeros(r)
+    found = root(lambda q: model.derivative(0.0, np.concatenate([q, zeros]))[r:], start[:r], tol=1e-12)
+    if not found.success:
+        raise EquilibriumNotFound(f"reduced model, tip load {load_N:g} N: {found.message}")
+    return np.concatenate([found.x, zeros])
+
+
+def _is_elastica(structure: Structure) -> bool:
+    """Whether the structure is the plain cantilever that the closed forms describe."""
+    return (
+        structure.ordered_joints == ("out_of_plane",)
+        and structure.gravity_m_s2 == 0.0
+        and structure.clamp_psi_deg == structure.clamp_theta_deg == structure.clamp_phi_deg == 0.0
+    )
+
+
+def _exact_tip(structure: Structure, load_N: float) -> tuple[float, float]:
+    stiffness = structure.section_stiffness("out_of_plane")
+    if not _is_elastica(structure) or stiffness is None:
+        return (np.nan, np.nan)
+    x, z = elastica_tip(stiffness, structure.length_m, load_N)
+    return float(x), float(z)
+
+
+def _exact_frequencies(structure: Structure, count: int) -> Array:
+    """ω_k = (λ_k/L)² √(EI/μ) with cos λ cosh λ = −1: the clamped-free Euler-Bernoulli beam."""
+    stiffness = structure.section_stiffness("out_of_plane")
+    if not _is_elastica(structure) or stiffness is None:
+        return np.empty(0)
+    # cos λ + 1/cosh λ changes sign once between multiples of π and does not overflow
+    roots = np.array(
+        [
+            brentq(lambda z: np.cos(z) + 1.0 / np.cosh(z), k * np.pi, (k + 1) * np.pi, xtol=1e-14)
+            for k in range(count)
+        ]
+    )
+    omega: Array = (roots / structure.length_m) ** 2 * np.sqrt(stiffness / structure.mass_per_length_kg_m)
+    return omega
