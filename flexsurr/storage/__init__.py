@@ -1,0 +1,33 @@
+"""Datasets on disk: Parquet shards and the manifest that vouches for them."""
+
+from flexsurr.storage.atomic import replacing, write_json
+from flexsurr.storage.errors import StorageError
+from flexsurr.storage.manifest import (
+    Manifest,
+    Scales,
+    ShardEntry,
+    build_manifest,
+    read_manifest,
+    read_shards,
+    split_trajectories,
+    write_manifest,
+)
+from flexsurr.storage.parquet import Shard, ShardMetadata, read_shard, write_shard
+
+__all__ = [
+    "Manifest",
+    "Scales",
+    "Shard",
+    "ShardEntry",
+    "ShardMetadata",
+    "StorageError",
+    "build_manifest",
+    "read_manifest",
+    "read_shard",
+    "read_shards",
+    "replacing",
+    "split_trajectories",
+    "write_json",
+    "write_manifest",
+    "write_shard",
+]

@@ -1,0 +1,223 @@
+"""The manifest of a dataset: its shards with their hashes, the split by trajectory, the scales.
+
+Shards are read one at a time, so that memory does not grow with their number.
+"""
+
+import hashlib
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from flexsurr.storage.atomic import write_json
+from flexsurr.storage.errors import StorageError
+from flexsurr.storage.moments import Moments
+from flexsurr.storage.parquet import FORMAT_VERSION, Shard, ShardMetadata, read_shard
+
+SPLIT_STREAM = (0, 1)  # keeps the split's random numbers apart from those of any trajectory
+
+
+@dataclass(frozen=True)
+class ShardEntry:
+    """One shard: its file beside the manifest, its hash, and the trajectories first … first + count − 1."""
+
+    file: str
+    sha256: str
+    first: int
+    count: int
+    samples: int
+
+
+@dataclass(frozen=True)
+class Scales:
+    """Of the training trajectories, in the order x, then dx (2d,): mean, standard deviation, largest size."""
+
+    mean: tuple[float, ...]
+    standard_deviation: tuple[float, ...]
+    largest: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Manifest:
+    """A dataset. `folder` is where the manifest was read from or will be written to."""
+
+    folder: Path
+    study: str
+    variant: str
+    seed: int
+    configuration: str
+    state_names: tuple[str, ...]
+    state_units: tuple[str, ...]
+    shards: tuple[ShardEntry, ...]
+    train: tuple[int, ...]
+    validation: tuple[int, ...]
+    scales: Scales
+    failures: tuple[str, ...]
+    format_version: int = FORMAT_VERSION
+
+    @property
+    def trajectories(self) -> int:
+        """Number of trajectories."""
+        return sum(entry.count for entry in self.shards)
+
+    @property
+    def samples(self) -> int:
+        """Number of samples of all trajectories."""
+        return sum(entry.samples for entry in self.shards)
+
+
+def split_trajectories(
+    count: int, training_fraction: float, seed: int
+) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """Numbers of the training and of the validation trajectories; neither is empty for `count` ≥ 2."""
+    order = np.random.default_rng([seed, *SPLIT_STREAM]).permutation(count)
+    training = min(max(round(training_fraction * count), 1), count - 1)
+    return tuple(sorted(order[:training].tolist())), tuple(sorted(order[training:].tolist()))
+
+
+def build_manifest(
+    paths: Sequence[Path],
+    *,
+    study: str,
+    variant: str,
+    seed: int,
+    configuration: str,
+    trajectories: int,
+    training_fraction: float,
+) -> Manifest:
+    """The manifest of the shards at `paths`, which all lie in one folder.
+
+    Raises StorageError naming each shard that is damaged, belongs to another dataset than the one
+    described, or leaves a trajectory out or gives it twice.
+    """
+    train, validation = split_trajectories(trajectories, training_fraction, seed)
+    problems, entries, moments = [], [], None
+    failures: list[str] = []
+    states: ShardMetadata | None = None
+    for path in sorted(paths, key=lambda path: path.name):
+        try:
+            shard = read_shard(path)
+            expected = replace(
+                shard.metadata, study=study, variant=variant, seed=seed, configuration=configuration
+            )
+            _check_belongs(path, shard.metadata, expected)
+            if states and (shard.metadata.state_names, shard.metadata.state_units) != (
+                states.state_names,
+                states.state_units,
+            ):
+                raise StorageError(f"{path}: has other states or units than the shards before it")
+        except StorageError as error:
+            problems.append(str(error))
+            continue
+        states = shard.metadata
+        failures += shard.metadata.failures
+        entries.append(_entry(path, shard))
+        rows = np.isin(shard.trajectory, train)
+        block = Moments.of(np.hstack([shard.x, shard.dx])[rows])
+        moments = block if moments is None else moments.joined(block)
+    if not problems:
+        problems = _check_complete(entries, trajectories)
+    if problems or states is None or moments is None:
+        raise StorageError("\n".join(problems) or "a dataset without shards")
+    return Manifest(
+        folder=paths[0].parent,
+        study=study,
+        variant=variant,
+        seed=seed,
+        configuration=configuration,
+        state_names=states.state_names,
+        state_units=states.state_units,
+        shards=tuple(sorted(entries, key=lambda entry: entry.first)),
+        train=train,
+        validation=validation,
+        scales=Scales(
+            tuple(moments.mean.tolist()),
+            tuple(np.sqrt(moments.variance).tolist()),
+            tuple(moments.largest.tolist()),
+        ),
+        failures=tuple(failures),
+    )
+
+
+def write_manifest(path: Path, manifest: Manifest) -> None:
+    """Write the manifest as JSON, atomically."""
+    content = asdict(manifest)
+    del content["folder"]
+    write_json(path, content)
+
+
+def read_manifest(path: Path) -> Manifest:
+    """The manifest at `path`. Raises StorageError naming the file if it is missing or not a manifest."""
+    try:
+        values = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise StorageError(f"{path}: cannot be read: {error.strerror}") from None
+    except ValueError:
+        raise StorageError(f"{path}: damaged or truncated, not JSON") from None
+    try:
+        if values["format_version"] != FORMAT_VERSION:
+            raise StorageError(
+                f"{path}: has format version {values['format_version']}; this program reads {FORMAT_VERSION}"
+            )
+        for key in ("state_names", "state_units", "train", "validation", "failures"):
+            values[key] = tuple(values[key])
+        values["shards"] = tuple(ShardEntry(**entry) for entry in values["shards"])
+        values["scales"] = Scales(**{key: tuple(numbers) for key, numbers in values["scales"].items()})
+        return Manifest(folder=path.parent, **values)
+    except (TypeError, KeyError, AttributeError):
+        raise StorageError(f"{path}: cannot be understood as a manifest") from None
+
+
+def read_shards(manifest: Manifest) -> Iterator[Shard]:
+    """The shards of a dataset, one after another, each checked against what the manifest recorded.
+
+    Raises StorageError naming the shard that is not the recorded file or belongs elsewhere.
+    """
+    for entry in manifest.shards:
+        path = manifest.folder / entry.file
+        shard = read_shard(path, entry.sha256)
+        expected = replace(
+            shard.metadata,
+            study=manifest.study,
+            variant=manifest.variant,
+            seed=manifest.seed,
+            configuration=manifest.configuration,
+            state_names=manifest.state_names,
+            state_units=manifest.state_units,
+            first=entry.first,
+            count=entry.count,
+        )
+        _check_belongs(path, shard.metadata, expected)
+        yield shard
+
+
+def _entry(path: Path, shard: Shard) -> ShardEntry:
+    with path.open("rb") as file:
+        sha256 = hashlib.file_digest(file, "sha256").hexdigest()
+    metadata = shard.metadata
+    return ShardEntry(path.name, sha256, metadata.first, metadata.count, len(shard.t))
+
+
+def _check_belongs(path: Path, found: ShardMetadata, expected: ShardMetadata) -> None:
+    got, wanted = asdict(found), asdict(expected)
+    differences = [f"{key} {got[key]!r} instead of {wanted[key]!r}" for key in got if got[key] != wanted[key]]
+    if differences:
+        raise StorageError(f"{path}: belongs to another dataset: {', '.join(differences)}")
+
+
+def _check_complete(entries: Sequence[ShardEntry], trajectories: int) -> list[str]:
+    owner: dict[int, str] = {}
+    problems = []
+    for entry in entries:
+        for number in range(entry.first, entry.first + entry.count):
+            if number in owner:
+                problems.append(f"{entry.file}: trajectory {number} is also in {owner[number]}")
+            elif number >= trajectories:
+                problems.append(f"{entry.file}: trajectory {number} lies beyond the {trajectories} expected")
+            owner.setdefault(number, entry.file)
+    missing = [number for number in range(trajectories) if number not in owner]
+    if missing:
+        problems.append(f"no shard holds the trajectories {missing}")
+    return problems

@@ -1,0 +1,43 @@
+"""Mean, variance and largest size of columns, gathered block by block in constant memory."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Moments:
+    """Of columns (d,): number of rows, mean, sum of squared deviations from it, largest magnitude."""
+
+    rows: int
+    mean: Array
+    squares: Array
+    largest: Array
+
+    @classmethod
+    def of(cls, values: Array) -> "Moments":
+        """The moments of one block `values` (m, d)."""
+        if not len(values):
+            zero = np.zeros(values.shape[1])
+            return cls(0, zero, zero, zero)
+        mean = values.mean(axis=0)
+        squares = np.square(values - mean).sum(axis=0)
+        return cls(len(values), mean, squares, np.abs(values).max(axis=0))
+
+    def joined(self, other: "Moments") -> "Moments":
+        """The moments of both blocks together (Chan, Golub & LeVeque 1983, eq. 1.5)."""
+        rows = self.rows + other.rows
+        if rows == 0:
+            return self
+        difference = other.mean - self.mean
+        mean = self.mean + difference * (other.rows / rows)
+        squares = self.squares + other.squares + np.square(difference) * (self.rows * other.rows / rows)
+        return Moments(rows, mean, squares, np.maximum(self.largest, other.largest))
+
+    @property
+    def variance(self) -> Array:
+        """Population variance of each column (d,); zero where there are no rows."""
+        return self.squares / max(self.rows, 1)
