@@ -1,0 +1,113 @@
+"""A digest of the source code that a command depends on, so that editing code reruns what it made.
+
+The import graph is read from the sources without running them: every import of a flexsurr module is
+followed, wherever in a file it stands. A name imported from a package leads to the module that defines
+it; the package's own `__init__` counts only where it holds more than imports and `__all__`, so that a
+new name in its list does not rerun everything. Within a module every character counts, comments too.
+"""
+
+import ast
+import hashlib
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+PACKAGE = "flexsurr"
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def code_digest(module: str, root: Path = ROOT) -> str:
+    """Sixteen hex digits of the hash of the sources that `module` depends on, itself included.
+
+    `root` holds the folder of the package. Raises ModuleNotFoundError if there is no such module.
+    """
+    digest = hashlib.sha256()
+    for name in sorted(modules(module, root)):
+        digest.update(name.encode() + b"\0" + _file(root, name).read_bytes() + b"\0")
+    return digest.hexdigest()[:16]
+
+
+def modules(module: str, root: Path = ROOT) -> frozenset[str]:
+    """Every flexsurr module that counts towards the digest of `module`."""
+    found: set[str] = set()
+    waiting = [module]
+    while waiting:
+        name = waiting.pop()
+        if name not in found:
+            found.add(name)
+            waiting += _needs(root, name)
+    return frozenset(found)
+
+
+@cache
+def _needs(root: Path, module: str) -> tuple[str, ...]:
+    needed = dict.fromkeys(_imports(root, module))
+    parts = module.split(".")
+    parents = [".".join(parts[:depth]) for depth in range(1, len(parts))]
+    return (*needed, *(parent for parent in parents if not _only_lists_names(root, parent)))
+
+
+def _imports(root: Path, module: str) -> Iterator[str]:
+    for node in ast.walk(_tree(root, module)):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names if alias.name.split(".")[0] == PACKAGE)
+        elif isinstance(node, ast.ImportFrom):
+            source = _absolute(root, module, node)
+            if source.split(".")[0] == PACKAGE:
+                yield from (_defining(root, source, alias.name) for alias in node.names)
+
+
+def _defining(root: Path, source: str, name: str) -> str:
+    """The module that `from source import name` leads to, through packages that only pass it on."""
+    submodule = f"{source}.{name}"
+    if _exists(root, submodule):
+        return submodule
+    if _is_package(root, source) and _only_lists_names(root, source):
+        for node in _tree(root, source).body:
+            if isinstance(node, ast.ImportFrom):
+                for alias in node.names:
+                    if (alias.asname or alias.name) == name:
+                        return _defining(root, _absolute(root, source, node), alias.name)
+    return source
+
+
+def _absolute(root: Path, module: str, node: ast.ImportFrom) -> str:
+    if node.level == 0:
+        return node.module or ""
+    parts = module.split(".")
+    kept = len(parts) - node.level + (1 if _is_package(root, module) else 0)
+    return ".".join([*parts[:kept], *([node.module] if node.module else [])])
+
+
+def _only_lists_names(root: Path, package: str) -> bool:
+    """Whether the package's `__init__` holds nothing but a docstring, imports and `__all__`."""
+    for node in _tree(root, package).body:
+        docstring = isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
+        names = isinstance(node, ast.Assign) and [ast.unparse(target) for target in node.targets] == [
+            "__all__"
+        ]
+        if not (docstring or names or isinstance(node, ast.Import | ast.ImportFrom)):
+            return False
+    return True
+
+
+def _is_package(root: Path, module: str) -> bool:
+    return (root / Path(*module.split(".")) / "__init__.py").is_file()
+
+
+def _exists(root: Path, module: str) -> bool:
+    return _is_package(root, module) or (root / Path(*module.split("."))).with_suffix(".py").is_file()
+
+
+def _file(root: Path, module: str) -> Path:
+    path = root / Path(*module.split("."))
+    if _is_package(root, module):
+        return path / "__init__.py"
+    if not path.with_suffix(".py").is_file():
+        raise ModuleNotFoundError(f"{module}: no such module below {root}")
+    return path.with_suffix(".py")
+
+
+@cache
+def _tree(root: Path, module: str) -> ast.Module:
+    return ast.parse(_file(root, module).read_bytes())

@@ -1,0 +1,154 @@
+import logging
+import sqlite3
+from multiprocessing import get_context
+from pathlib import Path
+
+import pytest
+from mlflow import MlflowClient
+
+from flexsurr.training.tracking import (
+    RUN_KEY,
+    Store,
+    create_store,
+    database,
+    end_sweep,
+    store_uri,
+    tracked,
+)
+
+PARENT = "mlflow.parentRunId"
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory) -> Store:
+    """A real store; creating one takes seconds, so the tests of this file share it."""
+    folder = tmp_path_factory.mktemp("mlflow")
+    return create_store(store_uri(None, folder), folder, ["cantilever", "wing"])
+
+
+def run_of(store: Store, key: str, study: str = "cantilever"):
+    found = MlflowClient(store.uri).search_runs([store.experiments[study]], f"tags.`{RUN_KEY}` = '{key}'")
+    assert len(found) == 1
+    return found[0]
+
+
+def train_in_another_process(store: Store, key: str) -> None:
+    with tracked(store, "wing", key, {}) as trial:
+        for epoch in range(50):
+            trial.epoch(epoch, 1.0 / (1 + epoch), 1.0)
+
+
+def test_a_trial_is_a_child_with_parameters_losses_figures_and_files(made, tmp_path):
+    weights = tmp_path / "weights.npz"
+    weights.write_bytes(b"weights")
+    with tracked(made, "cantilever", "hnn-1", {"hidden": [16], "degree": None}) as trial:
+        for epoch in range(1500):
+            trial.epoch(epoch, 1.0 / (1 + epoch), 2.0 / (1 + epoch))
+        trial.keep({"train_nmse": 1e-9, "diverged": 0, "reason": ""}, {"dataset_sha256": "abc"}, [weights])
+    run = run_of(made, "hnn-1")
+    assert run.info.status == "FINISHED"
+    assert run.data.tags[PARENT] == made.parents["cantilever"]
+    assert run.data.tags["dataset_sha256"] == "abc"
+    assert run.data.params == {"hidden": "[16]"}
+    assert run.data.metrics["train_nmse"] == 1e-9
+    client = MlflowClient(made.uri)
+    history = client.get_metric_history(run.info.run_id, "validation_loss")
+    assert [(m.step, m.value) for m in history] == [(e, 2.0 / (1 + e)) for e in range(1500)]
+    assert [f.path for f in client.list_artifacts(run.info.run_id)] == ["weights.npz"]
+    assert Path(database(Path(made.uri.removeprefix("sqlite:///")).parent)).is_file()
+    assert Path(client.download_artifacts(run.info.run_id, "weights.npz")).read_bytes() == b"weights"
+
+
+def test_a_failed_trial_says_why(made):
+    with tracked(made, "cantilever", "hnn-2", {}) as trial:
+        trial.status, trial.reason = "failed", "the loss left the finite numbers at epoch 3"
+    run = run_of(made, "hnn-2")
+    assert run.info.status == "FAILED"
+    assert run.data.tags["reason"] == "the loss left the finite numbers at epoch 3"
+
+
+def test_an_exception_passes_and_is_recorded(made):
+    with pytest.raises(RuntimeError, match="boom"), tracked(made, "cantilever", "hnn-3", {}):
+        raise RuntimeError("boom")
+    run = run_of(made, "hnn-3")
+    assert (run.info.status, run.data.tags["reason"]) == ("FAILED", "RuntimeError: boom")
+
+
+@pytest.mark.parametrize("stop", [SystemExit(143), KeyboardInterrupt()])
+def test_a_job_told_to_stop_ends_its_run(made, stop):
+    key = f"hnn-{type(stop).__name__}"
+    with pytest.raises(type(stop)), tracked(made, "cantilever", key, {}):
+        raise stop
+    assert run_of(made, key).info.status == "KILLED"
+
+
+def test_a_run_left_running_is_removed_when_its_job_starts_again(made):
+    abandoned = tracked(made, "cantilever", "hnn-5", {})
+    abandoned.__enter__()
+    first = run_of(made, "hnn-5").info.run_id
+    with tracked(made, "cantilever", "hnn-5", {}):
+        pass
+    second = run_of(made, "hnn-5")
+    assert second.info.status == "FINISHED"
+    assert second.info.run_id != first
+    assert MlflowClient(made.uri).get_run(first).info.lifecycle_stage == "deleted"
+
+
+def test_the_end_of_the_sweep_leaves_nothing_running(made):
+    abandoned = tracked(made, "cantilever", "hnn-6", {})
+    abandoned.__enter__()
+    with tracked(made, "cantilever", "hnn-7", {}):
+        pass
+    end_sweep(made, "cantilever", {"hnn-7": {"long_response_error_percent_worst": 0.5}})
+    client = MlflowClient(made.uri)
+    assert run_of(made, "hnn-6").info.status == "KILLED"
+    assert run_of(made, "hnn-7").data.metrics["long_response_error_percent_worst"] == 0.5
+    assert client.get_run(made.parents["cantilever"]).info.status == "FINISHED"
+    assert client.search_runs([made.experiments["cantilever"]], "attributes.status = 'RUNNING'") == []
+
+
+def test_creating_the_store_again_changes_nothing(made):
+    folder = database(Path(made.uri.removeprefix("sqlite:///")).parent).parent
+    assert create_store(made.uri, folder, ["cantilever", "wing"]) == made
+
+
+def test_many_processes_write_at_once(made):
+    context = get_context("spawn")
+    keys = [f"wing-{number}" for number in range(3)]
+    workers = [context.Process(target=train_in_another_process, args=(made, key)) for key in keys]
+    for worker in workers:
+        worker.start()
+    for worker in workers:
+        worker.join(120)
+        assert worker.exitcode == 0
+    for key in keys:
+        run = run_of(made, key, "wing")
+        assert (run.info.status, run.data.metrics["train_loss"]) == ("FINISHED", 1.0 / 50)
+
+
+def test_a_deleted_database_is_a_warning_and_is_not_made_again(tmp_path, caplog):
+    store = Store(store_uri(None, tmp_path), {"cantilever": "1"}, {"cantilever": "x"})
+    with caplog.at_level(logging.WARNING), tracked(store, "cantilever", "hnn-1", {}) as trial:
+        trial.epoch(0, 1.0, 1.0)
+        trial.keep({"train_nmse": 1.0}, {}, [])
+    assert "mlflow.db is gone; results are made without it" in caplog.text
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_ruined_database_is_a_warning(tmp_path, caplog):
+    database(tmp_path).write_bytes(b"this is no database" * 100)
+    store = Store(store_uri(None, tmp_path), {"cantilever": "1"}, {"cantilever": "x"})
+    with caplog.at_level(logging.WARNING), tracked(store, "cantilever", "hnn-1", {}) as trial:
+        trial.epoch(0, 1.0, 1.0)
+    assert "results are made without it" in caplog.text
+
+
+def test_a_database_that_loses_its_tables_half_way_is_a_warning(tmp_path, caplog):
+    store = create_store(store_uri(None, tmp_path), tmp_path, ["cantilever"])
+    with caplog.at_level(logging.WARNING), tracked(store, "cantilever", "hnn-1", {}) as trial:
+        with sqlite3.connect(database(tmp_path)) as connection:
+            connection.execute("DROP TABLE metrics")
+        connection.close()
+        trial.epoch(0, 1.0, 1.0)
+        trial.send()
+    assert "results are made without it" in caplog.text
