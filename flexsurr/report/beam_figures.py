@@ -1,0 +1,134 @@
+"""Full and reduced order against exact statics and against each other: Figs. 8 and 9 of the study."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from flexsurr.report.style import (
+    BLACK,
+    BLUE,
+    COLOURS,
+    PAGE_IN,
+    VARIANTS,
+    VERMILION,
+    letter,
+    new_figure,
+    styled,
+)
+
+WINDOW_S = (0.5, 1.0)
+"""The part of the response that Fig. 9 of the study shows."""
+
+VARIANT_COLOURS = {"hamiltonian": BLUE, "as_printed": VERMILION}
+
+
+@styled
+def figure_08(statics: pd.DataFrame) -> Figure:
+    """Tip position under dead tip loads, and how far either model lies from the exact elastica.
+
+    `statics`: one row per load, columns of static_tip.csv.
+    """
+    figure = new_figure(PAGE_IN, 2.7)
+    left, right = figure.subplots(1, 2, width_ratios=(1.15, 1))
+    load = statics["load_N"]
+    for axis, height in (("x", 0.62), ("z", 0.55)):
+        exact = statics[f"{axis}_exact_m"]
+        left.plot(load, exact, color=BLACK, linewidth=0.9, zorder=1)
+        left.plot(load, statics[f"{axis}_fom_m"], "o", color=COLOURS["fom"], markerfacecolor="none", zorder=3)
+        left.plot(load, statics[f"{axis}_rom_m"], "x", color=BLUE, markersize=3.5, zorder=2)
+        at = int(height * len(load))
+        anchor = statics[f"{axis}_rom_m" if exact.isna().all() else f"{axis}_exact_m"].iloc[at]
+        left.annotate(
+            f"{axis}",
+            (load.iloc[at], anchor),
+            xytext=(0, 9),
+            textcoords="offset points",
+            ha="center",
+            style="italic",
+            fontsize=9,
+        )
+    handles = [
+        left.plot([], [], color=BLACK, linewidth=0.9)[0],
+        left.plot([], [], "o", color=COLOURS["fom"], markerfacecolor="none")[0],
+        left.plot([], [], "x", color=BLUE, markersize=3.5)[0],
+    ]
+    left.legend(handles, ["exact elastica", "full order", "reduced order"], loc="center right")
+    left.set(xlabel="tip load [N]", ylabel="tip position [m]", title="tip under a dead load along z")
+    _static_errors(right, statics)
+    letter((left, right))
+    return figure
+
+
+def _static_errors(ax: Axes, statics: pd.DataFrame) -> None:
+    """Distance of each model's tip from the exact one; from the full-order model's where none is exact."""
+    judge, title = ("exact", "distance from the exact tip")
+    if statics["x_exact_m"].isna().all():
+        judge, title = ("fom", "distance from the full-order tip")
+    styles = {"fom": ("o", COLOURS["fom"], "full order"), "rom": ("x", BLUE, "reduced order")}
+    loaded = statics[statics["load_N"] != 0.0]
+    for model, (marker, colour, name) in styles.items():
+        if model == judge:
+            continue
+        distance_m = np.hypot(
+            loaded[f"x_{model}_m"] - loaded[f"x_{judge}_m"], loaded[f"z_{model}_m"] - loaded[f"z_{judge}_m"]
+        )
+        ax.plot(
+            loaded["load_N"],
+            1e3 * distance_m,
+            marker=marker,
+            color=colour,
+            linewidth=0.8,
+            label=name,
+            markerfacecolor="none",
+            markersize=3.5,
+        )
+    ax.set_yscale("log")
+    ax.set(xlabel="tip load [N]", ylabel="distance [mm]", title=title, xlim=(0, None))
+    ax.legend(loc="lower right")
+
+
+@styled
+def figure_09(validation: pd.DataFrame) -> Figure:
+    """Tip height under a harmonic tip force: full and reduced order, gyroscopic term kept and dropped.
+
+    `validation`: columns variant, model ("fom", "rom"), t_s, tip_x_m, tip_z_m.
+    """
+    start_s, end_s = WINDOW_S
+    if validation["t_s"].max() <= start_s:
+        start_s = 0.0
+    shown = validation[validation["t_s"].between(start_s, end_s)]
+    z = shown.pivot_table(index="t_s", columns=["variant", "model"], values="tip_z_m")
+    variants = [variant for variant in VARIANTS if variant in z.columns.get_level_values(0)]
+
+    figure = new_figure(PAGE_IN, 1.55 * len(variants) + 1.65)
+    axes = list(figure.subplots(len(variants) + 1, 1, sharex=True))
+    for ax, variant in zip(axes, variants, strict=False):
+        ax.plot(z.index, z[variant, "fom"], color=COLOURS["fom"], linewidth=2.2, label="full order")
+        ax.plot(z.index, z[variant, "rom"], color=BLACK, linewidth=0.9, label="reduced order")
+        ax.set(ylabel="tip height z [m]", title=VARIANTS[variant])
+    axes[0].legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, borderaxespad=0.0)
+
+    last = axes[-1]
+    if len(variants) == 2:
+        for model, style in (("fom", "-"), ("rom", (0, (4, 1.5)))):
+            difference = 1e3 * (z["as_printed", model] - z["hamiltonian", model])
+            name = {"fom": "full order", "rom": "reduced order"}[model]
+            last.plot(z.index, difference, color=VERMILION, linestyle=style, label=f"dropped − kept, {name}")
+    for variant in variants:
+        last.plot(
+            z.index,
+            1e3 * (z[variant, "rom"] - z[variant, "fom"]),
+            color=VARIANT_COLOURS[variant],
+            linewidth=0.8,
+            linestyle=(0, (1, 1)),
+            label=f"reduced − full, {_short(variant)}",
+        )
+    last.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=4, borderaxespad=0.0, columnspacing=1.0)
+    last.set(xlabel="time [s]", ylabel="difference in z [mm]", xlim=(start_s, float(z.index[-1])), title="")
+    letter(axes)
+    return figure
+
+
+def _short(variant: str) -> str:
+    return {"hamiltonian": "term kept", "as_printed": "term dropped"}[variant]

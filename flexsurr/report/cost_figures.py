@@ -1,0 +1,148 @@
+"""Cost against accuracy, with every model and every baseline in one picture."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from flexsurr.report.integrators import integrator_method
+from flexsurr.report.labels import place_labels
+from flexsurr.report.style import GREY, PAGE_IN, VARIANTS, colour, label, letter, new_figure, styled
+
+MARKERS: dict[str, str] = {"described": "s", "numpy": "D", "compiled": "o", "torch": "^"}
+
+SHORT: dict[str, str] = {
+    "scipy_radau": "SciPy",
+    "rk4": "RK4",
+    "dop853_fixed": "order 8",
+    "dop853": "DOP853",
+    "gauss_legendre_4": "GL4",
+    "gauss_legendre_6": "GL6",
+    "radau_iia_5": "Radau IIA",
+}
+
+RESPONSES = ("free", "forced")
+
+
+@styled
+def cost_accuracy(cost: pd.DataFrame) -> Figure:
+    """Wall time of one response against its tip error: every model × implementation × integrator.
+
+    `cost`: the columns of cost.csv. One row of panels for each response, one column for each variant. Labelled:
+    the Pareto front and what ran in SciPy's Radau. A setup of which a simulation diverged is hollow; one of
+    which all did stands on the upper edge.
+    """
+    responses = [response for response in RESPONSES if response in set(cost["response"])]
+    variants = [variant for variant in VARIANTS if variant in set(cost["variant"])]
+    figure = new_figure(PAGE_IN, 0.7 + 3.1 * len(responses))
+    grid = figure.subplots(len(responses), len(variants), sharex=True, sharey=True, squeeze=False)
+    for row, response in zip(grid, responses, strict=True):
+        for ax, variant in zip(row, variants, strict=True):
+            ax.set(xscale="log", yscale="log")
+            ax.set_title(f"{response} response, {VARIANTS[variant]}", loc="left")
+        row[0].set_ylabel("largest tip error [% of the peak]")
+    for ax in grid[-1]:
+        ax.set_xlabel("wall time of one response [s]")
+    _legend(figure, cost)
+    _limits(grid[0, 0], cost)
+    letter(grid.ravel())
+    for row, response in zip(grid, responses, strict=True):
+        for ax, variant in zip(row, variants, strict=True):
+            _panel(ax, cost[(cost["response"] == response) & (cost["variant"] == variant)])
+    return figure
+
+
+def pareto_front(cost: pd.DataFrame) -> pd.DataFrame:
+    """The rows that no other row beats in both wall time and tip error, cheapest first."""
+    finite = cost.dropna(subset=["wall_s_mean", "tip_error_percent"]).sort_values(
+        ["wall_s_mean", "tip_error_percent"]
+    )
+    before = finite["tip_error_percent"].cummin().shift(fill_value=np.inf)
+    return finite[finite["tip_error_percent"] < before]
+
+
+def _panel(ax: Axes, cost: pd.DataFrame) -> None:
+    front = pareto_front(cost)
+    ax.step(
+        front["wall_s_mean"],
+        front["tip_error_percent"],
+        where="post",
+        color="#C9C9C9",
+        linewidth=3.0,
+        zorder=1,
+    )
+    top = ax.get_ylim()[1]
+    points = []
+    for setup in cost.itertuples():
+        lost = not np.isfinite(setup.tip_error_percent)
+        points.append((setup.wall_s_mean, top if lost else setup.tip_error_percent))
+        ax.plot(
+            *points[-1],
+            MARKERS[str(setup.implementation)],
+            color=colour(str(setup.model)),
+            markersize=4.2,
+            markerfacecolor="none" if setup.diverged else None,
+            markeredgewidth=0.8,
+            zorder=3,
+            clip_on=False,
+        )
+    _published(ax, cost)
+    named = cost["implementation"].isin(["described", "torch"]) | (
+        (cost["integrator"] == "scipy_radau") & (cost["model"] == "rom")
+    )
+    chosen = [
+        (point, _text(setup), colour(str(setup.model)))
+        for point, setup, said in zip(points, cost.itertuples(), named, strict=True)
+        if np.isfinite(point[0]) and (said or setup.Index in front.index)
+    ]
+    if chosen:
+        place_labels(ax, *zip(*chosen, strict=True), obstacles=[p for p in points if np.isfinite(p[0])])
+
+
+def _text(setup) -> str:
+    method = integrator_method(str(setup.integrator))
+    if method == "scipy_radau":
+        return f"{label(str(setup.model))}, {setup.implementation}"
+    return f"{label(str(setup.model))}, {SHORT.get(method, method)}"
+
+
+def _published(ax: Axes, cost: pd.DataFrame) -> None:
+    """The study's own ratio, as a wall time beside our described reduced model."""
+    described = cost[(cost["model"] == "rom") & (cost["implementation"] == "described")]["wall_s_mean"]
+    percent = cost["paper_percent"].dropna()
+    if described.empty or percent.empty:
+        return
+    at = float(described.iloc[0]) * float(percent.iloc[0]) / 100.0
+    ax.axvline(at, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)), zorder=0)
+    ax.annotate(
+        f"published HNN:\n{percent.iloc[0]:g} % of described",
+        (at, 0.02),
+        xycoords=("data", "axes fraction"),
+        xytext=(-3, 0),
+        textcoords="offset points",
+        ha="right",
+        fontsize=6,
+        color="#555555",
+    )
+
+
+def _limits(ax: Axes, cost: pd.DataFrame) -> None:
+    """Limits that hold every point and leave room for labels; shared by all panels."""
+    wall, error = cost["wall_s_mean"].dropna(), cost["tip_error_percent"].dropna()
+    ax.set_xlim(wall.min() / 3.0, wall.max() * 6.0)
+    ax.set_ylim(max(error[error > 0.0].min(), 1e-12) / 4.0, error.max() * 4.0)
+
+
+def _legend(figure: Figure, cost: pd.DataFrame) -> None:
+    handles = [
+        Line2D([], [], color=colour(model), marker="o", linestyle="", label=label(model))
+        for model in dict.fromkeys(cost["model"])
+    ]
+    handles += [
+        Line2D([], [], color="#555555", marker=marker, linestyle="", label=name)
+        for name, marker in MARKERS.items()
+        if name in set(cost["implementation"])
+    ]
+    handles.append(Line2D([], [], color="#C9C9C9", linewidth=3.0, label="Pareto front"))
+    figure.legend(handles=handles, loc="outside upper center", ncols=min(len(handles), 9), columnspacing=1.2)

@@ -1,0 +1,158 @@
+"""One look for every figure: sizes for print, colours that colour-blind readers can tell apart, saving."""
+
+import os
+from collections.abc import Callable, Iterable
+from functools import wraps
+from pathlib import Path
+from typing import Any, ParamSpec
+
+import matplotlib
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+Inputs = ParamSpec("Inputs")
+
+COLUMN_IN = 3.5
+PAGE_IN = 7.2
+"""Widths [in] of one column and of a page of a journal."""
+
+PNG_DPI = 200
+
+# Okabe and Ito, "Color universal design", 2008. One colour a model, the same in every figure.
+BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
+BLUE, VERMILION, PURPLE, GREY = "#0072B2", "#D55E00", "#CC79A7", "#7F7F7F"
+COLOURS: dict[str, str] = {
+    "reference": BLACK,
+    "exact": BLACK,
+    "rom": BLACK,
+    "fom": ORANGE,
+    "mlp": VERMILION,
+    "hnn": BLUE,
+    "polynomial": GREEN,
+    "dissipative_hnn": PURPLE,
+    "port_hamiltonian": SKY,
+}
+NAMES: dict[str, str] = {
+    "reference": "reduced order",
+    "exact": "exact",
+    "rom": "reduced order",
+    "fom": "full order",
+    "mlp": "MLP",
+    "hnn": "HNN",
+    "polynomial": "polynomial H",
+    "dissipative_hnn": "D-HNN",
+    "port_hamiltonian": "port-Hamiltonian",
+}
+DASHES: dict[str, Any] = {"mlp": (0, (4, 1.5)), "hnn": (0, (2.2, 1.1)), "polynomial": (0, (1, 1))}
+"""Line styles beside the colours, for those who print in black and white; solid where none is given."""
+
+VARIANTS: dict[str, str] = {
+    "hamiltonian": "gyroscopic term kept",
+    "as_printed": "gyroscopic term dropped, as printed",
+}
+
+
+def colour(model: str) -> str:
+    """The colour of a model; of its family where the name carries more, as in "hnn_paper"."""
+    return COLOURS[_family(model)]
+
+
+def label(model: str) -> str:
+    """The model's name in legends, with what its name carries beyond the family in brackets."""
+    family = _family(model)
+    rest = model[len(family) :].strip("_ ")
+    return f"{NAMES[family]} ({rest.replace('_', ' ')})" if rest else NAMES[family]
+
+
+def dashes(model: str) -> Any:
+    """The line style of a model."""
+    return DASHES.get(_family(model), "-")
+
+
+def _family(model: str) -> str:
+    families = [name for name in COLOURS if model == name or model.startswith(f"{name}_")]
+    if not families:
+        raise KeyError(f"no colour for the model {model!r}: one of {', '.join(COLOURS)}")
+    return max(families, key=len)
+
+
+STYLE: dict[str, Any] = {
+    "font.family": "DejaVu Sans",
+    "font.size": 7.5,
+    "mathtext.fontset": "dejavusans",
+    "axes.titlesize": 8,
+    "axes.titlelocation": "left",
+    "axes.labelsize": 7.5,
+    "axes.linewidth": 0.6,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "grid.color": "#E4E4E4",
+    "grid.linewidth": 0.5,
+    "xtick.labelsize": 7,
+    "ytick.labelsize": 7,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "xtick.minor.width": 0.4,
+    "ytick.minor.width": 0.4,
+    "legend.fontsize": 7,
+    "legend.frameon": False,
+    "legend.handlelength": 2.2,
+    "lines.linewidth": 1.1,
+    "lines.markersize": 4,
+    "figure.dpi": 100,
+    "savefig.dpi": PNG_DPI,
+    "figure.constrained_layout.use": True,
+    # glyphs as paths: the same picture on every machine, whatever fonts it has
+    "svg.fonttype": "path",
+    "svg.hashsalt": "flexsurr",
+    "path.simplify_threshold": 0.2,
+}
+
+
+def styled(draw: Callable[Inputs, Figure]) -> Callable[Inputs, Figure]:
+    """Run a figure function under the house style, whatever the caller's settings are."""
+
+    @wraps(draw)
+    def drawn(*args: Inputs.args, **kwargs: Inputs.kwargs) -> Figure:
+        with matplotlib.rc_context():
+            matplotlib.rcdefaults()
+            matplotlib.rcParams.update(STYLE)
+            return draw(*args, **kwargs)
+
+    return drawn
+
+
+def new_figure(width_in: float, height_in: float) -> Figure:
+    """An empty figure on its own Agg canvas: no window, no global state."""
+    figure = Figure(figsize=(width_in, height_in))
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def letter(axes: Iterable[Axes]) -> None:
+    """(a), (b), … in front of the titles of `axes`."""
+    for name, ax in zip("abcdefghijkl", axes, strict=False):
+        title = ax.get_title(loc="left")
+        ax.set_title(f"({name})  {title}" if title else f"({name})", loc="left")
+
+
+def save(figure: Figure, stem: Path) -> tuple[Path, Path]:
+    """Write `stem`.svg and `stem`.png, each beside its place and moved there; return both paths.
+
+    The bytes depend on the figure alone: no date, no version, no random identifiers.
+    """
+    stem.parent.mkdir(parents=True, exist_ok=True)
+    paths = (stem.with_name(f"{stem.name}.svg"), stem.with_name(f"{stem.name}.png"))
+    with matplotlib.rc_context():
+        matplotlib.rcParams.update(STYLE)
+        for path, metadata in zip(paths, ({"Date": None, "Creator": None}, {"Software": None}), strict=True):
+            beside = path.with_name(f".{path.name}.{os.getpid()}")
+            try:
+                figure.savefig(beside, format=path.suffix[1:], metadata=metadata, dpi=PNG_DPI)
+                os.replace(beside, path)
+            finally:
+                beside.unlink(missing_ok=True)
+    return paths

@@ -1,0 +1,157 @@
+"""The tables: data frames whose columns are a contract, their files, and a page to read each on."""
+
+import html
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+import pandas as pd
+
+STATIC_TIP = ("load_N", "x_exact_m", "z_exact_m", "x_fom_m", "z_fom_m", "x_rom_m", "z_rom_m")
+NATURAL_FREQUENCIES = (
+    "structure",
+    "mode",
+    "fom_rad_s",
+    "rom_rad_s",
+    "published_fom_rad_s",
+    "published_rom_rad_s",
+)
+TRAINING = (
+    "study",
+    "variant",
+    "run_id",
+    "architecture",
+    "hidden",
+    "activation",
+    "optimiser",
+    "epochs",
+    "wall_s",
+    "train_nmse",
+    "validation_nmse",
+)
+COST = (
+    "study",
+    "variant",
+    "response",
+    "model",
+    "implementation",
+    "integrator",
+    "simulations",
+    "wall_s_mean",
+    "wall_s_std",
+    "relative_to_described_percent",
+    "relative_to_described_std_percent",
+    "relative_to_numpy_percent",
+    "relative_to_compiled_percent",
+    "paper_percent",
+    "paper_std_percent",
+    "tip_error_percent",
+    "energy_drift_percent",
+    "diverged",
+)
+
+
+def static_tip(statics: pd.DataFrame) -> pd.DataFrame:
+    """static_tip.csv: tip position [m] against dead tip load [N], ascending."""
+    return _columns(statics, STATIC_TIP).sort_values("load_N", ignore_index=True)
+
+
+def natural_frequencies(frequencies: pd.DataFrame) -> pd.DataFrame:
+    """natural_frequencies.csv: full order, reduced order, and what is published [rad/s]."""
+    return _columns(frequencies, NATURAL_FREQUENCIES)
+
+
+def training(metrics: pd.DataFrame) -> pd.DataFrame:
+    """training.csv: every run, failed ones with empty losses; best validation first in each variant."""
+    frame = _columns(metrics, TRAINING)
+    return frame.sort_values(["study", "variant", "validation_nmse", "run_id"], ignore_index=True)
+
+
+def cost(costs: pd.DataFrame) -> pd.DataFrame:
+    """cost.csv: every model × implementation × integrator, by study, variant and response."""
+    return _columns(costs, COST)
+
+
+def save_table(frame: pd.DataFrame, path: Path) -> None:
+    """Write `frame` as CSV, nine significant digits, beside its place, and move it there."""
+    _write(path, frame.to_csv(index=False, float_format="%.9g", lineterminator="\n"))
+
+
+def save_page(frame: pd.DataFrame, title: str, caption: str, path: Path) -> None:
+    """Write `frame` as a page of HTML with a title and a caption, beside its place, and move it there."""
+    _write(path, page(frame, title, caption))
+
+
+def page(frame: pd.DataFrame, title: str, caption: str) -> str:
+    """A self-contained HTML page: title, caption, table. Numbers with four digits; empty where unknown."""
+    numeric = [pd.api.types.is_numeric_dtype(frame[name]) for name in frame.columns]
+    head = "".join(f"<th>{html.escape(name)}</th>" for name in frame.columns)
+    rows = []
+    for values in frame.itertuples(index=False):
+        cells = (
+            f'<td class="number">{_number(value)}</td>'
+            if is_number
+            else f"<td>{html.escape(_word(value))}</td>"
+            for value, is_number in zip(values, numeric, strict=True)
+        )
+        rows.append(f"<tr>{''.join(cells)}</tr>")
+    body = "\n".join(rows)
+    return _PAGE.format(title=html.escape(title), caption=html.escape(caption), head=head, body=body)
+
+
+def _columns(frame: pd.DataFrame, names: Sequence[str]) -> pd.DataFrame:
+    """Exactly these columns; KeyError naming those that are missing."""
+    missing = [name for name in names if name not in frame.columns]
+    if missing:
+        raise KeyError(f"columns missing: {', '.join(missing)}")
+    return frame[list(names)].reset_index(drop=True)
+
+
+def _number(value: float) -> str:
+    if pd.isna(value):
+        return ""
+    return f"{value:.4g}".replace("e-0", "e-").replace("e+0", "e+")
+
+
+def _word(value: object) -> str:
+    return "" if value is None or (isinstance(value, float) and pd.isna(value)) else str(value)
+
+
+def _write(path: Path, text: str) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    beside = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        beside.write_text(text, encoding="utf-8")
+        os.replace(beside, path)
+    finally:
+        beside.unlink(missing_ok=True)
+
+
+_PAGE = """<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<title>{title}</title>
+<style>
+body {{ font: 14px/1.45 system-ui, sans-serif; margin: 2em; color: #1b1b1b; }}
+p {{ max-width: 60em; }}
+table {{ border-collapse: collapse; font-size: 12.5px; }}
+thead th {{ position: sticky; top: 0; background: #fff; border-bottom: 1.5px solid #000; text-align: left;
+  vertical-align: bottom; padding: 4px 10px; max-width: 9em; overflow-wrap: anywhere; }}
+td {{ padding: 2px 10px; border-bottom: 1px solid #e4e4e4; white-space: nowrap; }}
+td.number {{ text-align: right; font-variant-numeric: tabular-nums; }}
+tr:hover td {{ background: #f3f6fa; }}
+</style>
+</head>
+<body>
+<h1>{title}</h1>
+<p>{caption}</p>
+<table>
+<thead><tr>{head}</tr></thead>
+<tbody>
+{body}
+</tbody>
+</table>
+</body>
+</html>
+"""
