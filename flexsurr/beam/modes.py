@@ -1,0 +1,89 @@
+"""Natural frequencies and modes about an equilibrium (eq. 9), and the modal basis of a reduced model."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import eigh
+
+from flexsurr.beam.chain import chain, check_coordinates, damping_matrix, stiffness_matrix
+from flexsurr.beam.equilibrium import find_equilibrium, tangent_stiffness
+from flexsurr.beam.kinematics import configuration, generalised_forces, mass_matrix
+from flexsurr.beam.loads import Load
+from flexsurr.config.structure import Structure
+from flexsurr.config.study import Reduction
+from flexsurr.simulation.rhs import Array
+
+
+@dataclass(frozen=True, eq=False)
+class ModalBasis:
+    """The first r modes of a structure about an equilibrium, and the reduced springs and dampers.
+
+    q = Φ η as in eq. 10, measured from the undeformed shape whatever the equilibrium; a mode of unit norm
+    has η in rad (with axial joints: rad and m alike), a mass-normalised one in kg½ m.
+    """
+
+    structure: Structure
+    equilibrium: Array  # (n,) shape about which the modes were taken
+    modes: Array  # (n, r) Φ
+    stiffness: Array  # (r, r) Φᵀ K Φ
+    damping: Array  # (r, r) Φᵀ C Φ
+    omega_rad_s: Array  # (r,) natural frequencies
+    unit_norms: Array  # (r,) Euclidean norm of each mode; 1 for modes of unit norm
+    normalisation: str  # "unit" or "mass"
+
+
+def natural_modes(structure: Structure, equilibrium: Array, load: Load | None = None) -> tuple[Array, Array]:
+    """Frequencies ω (n,) [rad/s], ascending, and mass-normalised modes (n, n), columns (eq. 9).
+
+    The stiffness is the tangent one about `equilibrium` (n,): springs less the change of the generalised
+    forces of gravity and `load` with q. Each mode's sign lifts the tip; where the tip does not move in
+    z, the mode's largest component is positive. ValueError where the equilibrium is unstable.
+    """
+    q = check_coordinates(structure, equilibrium, "equilibrium")
+    squares, modes = eigh(tangent_stiffness(structure, q, load), mass_matrix(structure, q))
+    if squares[0] < 0.0:
+        raise ValueError(f"{structure.name}: the equilibrium is unstable (ω² = {squares[0]:.3g} rad²/s²)")
+    return np.sqrt(squares), modes * _signs(structure, q, modes)
+
+
+def reduce(structure: Structure, reduction: Reduction) -> ModalBasis:
+    """The basis of eq. 10: `reduction.modes` modes about the undeformed shape or the equilibrium.
+
+    The undeformed shape is an equilibrium without gravity, and its modes are taken so. ValueError for more
+    modes than coordinates.
+    """
+    if reduction.modes > structure.coordinates:
+        raise ValueError(
+            f"modes: {reduction.modes} modes asked of {structure.name}, which has "
+            f"{structure.coordinates} coordinates"
+        )
+    if reduction.about == "equilibrium":
+        equilibrium = find_equilibrium(structure)
+        omega, modes = natural_modes(structure, equilibrium)
+    else:
+        equilibrium = np.zeros(structure.coordinates)
+        omega, modes = natural_modes(structure.model_copy(update={"gravity_m_s2": 0.0}), equilibrium)
+    modes = modes[:, : reduction.modes]
+    if reduction.normalisation == "unit":
+        modes = modes / np.linalg.norm(modes, axis=0)
+    return ModalBasis(
+        structure=structure,
+        equilibrium=equilibrium,
+        modes=np.ascontiguousarray(modes),
+        stiffness=modes.T @ stiffness_matrix(structure) @ modes,
+        damping=modes.T @ damping_matrix(structure) @ modes,
+        omega_rad_s=omega[: reduction.modes],
+        unit_norms=np.linalg.norm(modes, axis=0),
+        normalisation=reduction.normalisation,
+    )
+
+
+def _signs(structure: Structure, q: Array, modes: Array) -> Array:
+    """(n,) ±1 for each mode (n, n), from the rise of the tip, Jᵀ e_z, or the largest component."""
+    beam = chain(structure)
+    nothing = np.zeros((beam.elements, 3))
+    upwards = generalised_forces(beam, configuration(beam, q), nothing, nothing, np.array([0.0, 0.0, 1.0]))
+    rise = upwards @ modes
+    largest = modes[np.argmax(np.abs(modes), axis=0), np.arange(modes.shape[1])]
+    lifts = np.abs(rise) > 1e-6 * np.linalg.norm(modes, axis=0) * structure.length_m
+    return np.sign(np.where(lifts, rise, largest))

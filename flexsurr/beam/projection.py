@@ -1,0 +1,70 @@
+"""q = Φ η: the coordinates in which a model of the chain is written.
+
+The full-order model is the case Φ = 1, so every implementation of the dynamics is written once.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexsurr.beam.chain import chain, damping_matrix, stiffness_matrix
+from flexsurr.beam.modes import ModalBasis
+from flexsurr.config.structure import Structure
+from flexsurr.simulation.rhs import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Projection:
+    """Coordinates η (r,) with q = Φ η, their springs and dampers, and the names of the states (η, p)."""
+
+    structure: Structure
+    modes: Array  # (n, r) Φ
+    stiffness: Array  # (r, r) Φᵀ K Φ
+    damping: Array  # (r, r) Φᵀ C Φ
+    state_names: tuple[str, ...]
+    state_units: tuple[str, ...]
+
+    @property
+    def coordinates(self) -> int:
+        """r, half the number of states."""
+        return self.modes.shape[1]
+
+    def joints(self, x: Array) -> Array:
+        """Joint coordinates q (..., n) of the states x (..., 2r)."""
+        return np.asarray(x)[..., : self.coordinates] @ self.modes.T
+
+
+def projection(system: Structure | ModalBasis) -> Projection:
+    """The joint coordinates of a structure, or the modal coordinates of a basis."""
+    if isinstance(system, ModalBasis):
+        return _modal(system)
+    return _joints(system)
+
+
+def _joints(structure: Structure) -> Projection:
+    n = structure.elements
+    names = [f"{joint}_{i}" for joint in structure.ordered_joints for i in range(1, n + 1)]
+    axial = [joint == "axial" for joint in structure.ordered_joints for _ in range(n)]
+    units_q = ["m" if along else "rad" for along in axial]
+    units_p = ["kg m/s" if along else "kg m²/s" for along in axial]
+    return Projection(
+        structure=structure,
+        modes=np.eye(chain(structure).coordinates),
+        stiffness=stiffness_matrix(structure),
+        damping=damping_matrix(structure),
+        state_names=(*(f"q_{name}" for name in names), *(f"p_{name}" for name in names)),
+        state_units=(*units_q, *units_p),
+    )
+
+
+def _modal(basis: ModalBasis) -> Projection:
+    r = basis.modes.shape[1]
+    unit_q, unit_p = ("rad", "kg m²/s") if basis.normalisation == "unit" else ("kg½ m", "kg½ m/s")
+    return Projection(
+        structure=basis.structure,
+        modes=basis.modes,
+        stiffness=basis.stiffness,
+        damping=basis.damping,
+        state_names=(*(f"eta_{k}" for k in range(1, r + 1)), *(f"p_{k}" for k in range(1, r + 1))),
+        state_units=(unit_q,) * r + (unit_p,) * r,
+    )
