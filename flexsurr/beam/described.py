@@ -101,8 +101,8 @@ def gyroscopic_forces(structure: Structure, q: Array, rates: Array) -> Array:
         step = np.zeros(n, dtype=complex)
         step[k] = 1j * _STEP
         squares = [v @ v for v in velocities(structure, q + step, rates)]
-        kinetic = 0.5 * chain(structure).element_mass * sum(squares)
-        forces[k] = np.imag(kinetic) / _STEP
+        kinetic = 0.5 * chain(structure).element_mass * np.sum(squares)
+        forces[k] = kinetic.imag / _STEP
     return forces
 
 

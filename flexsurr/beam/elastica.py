@@ -33,9 +33,8 @@ def elastica_tip(bending_stiffness: float, length: float, tip_force: float) -> t
         return math.asin(math.sqrt(rise / (1.0 + rise)))
 
     def arc(rise: float) -> float:
-        return float(
-            ellipkinc(math.atan(math.tan(clamp(rise)) * math.sqrt(2.0 / (1.0 - rise))), 0.5 + 0.5 * rise)
-        )
+        psi = math.atan(math.tan(clamp(rise)) * math.sqrt(2.0 / (1.0 - rise)))
+        return float(ellipkinc(psi, 0.5 * (1.0 + rise)))
 
     # `rise` is near (κ L)²/2 for small loads, hence the bracket; xtol would spoil its relative accuracy.
     rise = brentq(lambda r: arc(r) - scale * length, 1e-300, 1.0 - 1e-15, xtol=1e-300, rtol=1e-15)

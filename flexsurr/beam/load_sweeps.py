@@ -51,7 +51,7 @@ def spatial_load_work_size(elements: int) -> int:
 @njit(fastmath=FLOATING_POINT, error_model="numpy", cache=True)
 def load_factor(kernel, t):
     """`History.factor` of the load in `kernel` at t [s]."""
-    if not kernel.start < t <= kernel.end:
+    if not kernel.start <= t < kernel.end:
         return 0.0
     return sine_cosine(kernel.frequency * t + kernel.phase)[0]
 

@@ -66,6 +66,14 @@ class LoadedModel(ABC):
         """Forces on the elements' centres (N, 3) and the tip (3,) [N] at a factor of 1."""
         return self.load.forces(self.projection.structure)
 
+    @abstractmethod
+    def derivative(self, t: float, x: Array) -> Array:
+        """ẋ (2r,) at time t [s] and states x (2r,)."""
+
+
+class InterpretedLoad(LoadedModel):
+    """The load added in Python to what the model returns."""
+
     def derivative(self, t: float, x: Array) -> Array:
         """ẋ (2r,) at time t [s] and states x (2r,)."""
         factor = self.load.history.factor(t)
@@ -80,7 +88,7 @@ class LoadedModel(ABC):
         """Φᵀ Jᵀ F (r,) at η (r,), at a factor of 1."""
 
 
-class DescribedLoad(LoadedModel):
+class DescribedLoad(InterpretedLoad):
     """Q from the Jacobian by complex steps, joint by joint."""
 
     def generalised_force(self, eta: Array) -> Array:
@@ -94,7 +102,7 @@ class DescribedLoad(LoadedModel):
         return modes.T @ forces
 
 
-class VectorisedLoad(LoadedModel):
+class VectorisedLoad(InterpretedLoad):
     """Q from moments about the joints."""
 
     @cached_property
@@ -108,7 +116,7 @@ class VectorisedLoad(LoadedModel):
         return modes.T @ generalised_forces(beam, at, self._nothing, *self.forces)
 
 
-class VectorisedPlanarLoad(LoadedModel):
+class VectorisedPlanarLoad(InterpretedLoad):
     """Q of a chain in a plane, from constant moment arms."""
 
     @cached_property

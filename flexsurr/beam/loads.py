@@ -18,10 +18,10 @@ Vector = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class History:
-    """The factor of a load over time: sin(ω t + phase) for start < t ≤ end, else 0.
+    """The factor of a load over time: sin(ω t + phase) for start ≤ t < end, else 0.
 
-    At a jump the value is that of the interval which ends there, so an integrator that stops at a
-    breakpoint sees the right one, and starts the next interval one floating-point number later.
+    At a jump it has the value of the interval which begins there; `simulate` keeps the stages of the
+    interval that ends there short of it by a few floating-point numbers.
     """
 
     start_s: float = -math.inf
@@ -37,7 +37,7 @@ class History:
 
     def factor(self, t: float) -> float:
         """The factor at time t [s]."""
-        if not self.start_s < t <= self.end_s:
+        if not self.start_s <= t < self.end_s:
             return 0.0
         return math.sin(self.frequency_rad_s * t + self.phase_rad)
 
