@@ -1,0 +1,28 @@
+# The whole study: simulate, train, choose, evaluate, draw.
+#
+#     snakemake --cores 2
+#     snakemake --cores 2 --configfile config/presets/quick.yaml
+#
+# Here the configuration is checked and the rules are included; the jobs are planned in
+# flexsurr/workflow/plan.py, and each rule runs one command of flexsurr/cli.
+
+from snakemake.utils import min_version
+
+min_version("9.20")
+
+
+configfile: "config/config.yaml"
+
+
+include: "workflow/rules/plan.smk"
+include: "workflow/rules/data.smk"
+include: "workflow/rules/learning.smk"
+include: "workflow/rules/evaluation.smk"
+include: "workflow/rules/report.smk"
+
+
+rule all:
+    default_target: True
+    input:
+        expand(f"{RESULTS}/figures/{{study}}/{{name}}.svg", study=STUDIES, name=FIGURES),
+        expand(f"{RESULTS}/tables/{{name}}.csv", name=TABLES),

@@ -1,0 +1,79 @@
+"""What every command has in common: its arguments, its log, and how it ends."""
+
+import argparse
+import json
+import logging
+import signal
+import sys
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from types import FrameType
+from typing import Any
+
+from flexsurr.config.errors import ConfigurationError
+from flexsurr.storage import StorageError
+
+Job = Mapping[str, Any]
+EXPECTED: tuple[type[Exception], ...] = (StorageError, ConfigurationError)
+
+INTERRUPTED = 130
+TERMINATED = 143
+
+
+def command(
+    work: Callable[..., None],
+    files: Mapping[str, str],
+    expected: tuple[type[Exception], ...] = (),
+) -> None:
+    """Run `work(job, <file>, …)` as this process's command, and end the process.
+
+    `files` maps names of options to what they hold; where the text ends in "…" the option takes any number.
+    Errors of the types of `expected`, and those of storage and configuration, are one line and exit
+    code 1; any other leaves its traceback in the log. SIGTERM ends the process as `sys.exit` does, so
+    that whatever is open is closed.
+    """
+    signal.signal(signal.SIGTERM, _terminate)
+    logging.basicConfig(
+        level=logging.INFO, stream=sys.stderr, format="%(asctime)s %(message)s", datefmt="%H:%M:%S"
+    )
+    module = sys.modules["__main__"]
+    parser = argparse.ArgumentParser(prog=f"python -m {_name()}", description=module.__doc__)
+    parser.add_argument("--job", type=_job, required=True, metavar="JSON", help="the values; or @file")
+    for option, text in files.items():
+        parser.add_argument(
+            f"--{option}",
+            type=Path,
+            nargs="*" if text.endswith("…") else None,
+            required=True,
+            metavar="PATH",
+            help=text,
+        )
+    arguments = vars(parser.parse_args())
+    job = arguments.pop("job")
+    try:
+        work(job, **arguments)
+    except (*EXPECTED, *expected) as error:
+        print(f"{_name()}: {error}", file=sys.stderr)
+        sys.exit(1)
+    except KeyboardInterrupt:
+        print(f"{_name()}: interrupted", file=sys.stderr)
+        sys.exit(INTERRUPTED)
+
+
+def _name() -> str:
+    spec = sys.modules["__main__"].__spec__
+    return spec.name if spec else "command"
+
+
+def _job(text: str) -> Job:
+    try:
+        content = json.loads(Path(text[1:]).read_text(encoding="utf-8") if text.startswith("@") else text)
+    except (OSError, ValueError) as error:
+        raise argparse.ArgumentTypeError(f"{text!r:.80} is no job: {error}") from None
+    if not isinstance(content, dict):
+        raise argparse.ArgumentTypeError(f"{text!r:.80} is no job: not a JSON object")
+    return content
+
+
+def _terminate(number: int, frame: FrameType | None) -> None:
+    sys.exit(TERMINATED)

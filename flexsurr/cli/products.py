@@ -1,0 +1,35 @@
+"""What a figure or a table reads: the files of its study, as its function's arguments."""
+
+import json
+from collections.abc import Sequence
+from fnmatch import fnmatch
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from flexsurr.cli.command import Job
+from flexsurr.config.structure import Structure
+
+
+def arguments(reads: Sequence[str], job: Job, inputs: Sequence[Path]) -> list[Any]:
+    """What a product of flexsurr.report `reads`, found in the job and among the files `inputs`.
+
+    Raises FileNotFoundError if no file fits one of `reads`.
+    """
+    return [_read(read, job, inputs) for read in reads]
+
+
+def _read(read: str, job: Job, inputs: Sequence[Path]) -> Any:
+    if read == "structure":
+        return Structure.model_validate(job["structure"])
+    files = [path for path in inputs if fnmatch(path.stem, read)]
+    if not files:
+        raise FileNotFoundError(f"no file is given that holds {read}")
+    if read == "metrics":
+        return pd.DataFrame([json.loads(path.read_text(encoding="utf-8")) for path in files])
+    if read == "history":
+        frames = [pd.read_parquet(path).assign(run_id=path.parent.name) for path in files]
+    else:
+        frames = [pd.read_parquet(path) for path in files]
+    return pd.concat([frame for frame in frames if len(frame)] or frames, ignore_index=True)

@@ -1,0 +1,36 @@
+"""Responses of the selected surrogates beside the reference's, and their energies (Figs. 10, 12, 13)."""
+
+from pathlib import Path
+
+from flexsurr.beam import EquilibriumNotFound, reduce
+from flexsurr.cli.command import Job, command
+from flexsurr.cli.frames import write_frame
+from flexsurr.cli.selected import selected_surrogates
+from flexsurr.config.part import part_of
+from flexsurr.config.structure import Structure
+from flexsurr.config.study import Study
+from flexsurr.evaluation import energy_table, response_table
+
+
+def main(job: Job, selection: Path, runs: Path, free: Path, forced: Path, energy: Path) -> None:
+    """Write the free and the forced response and the energies of one variant."""
+    study, variant = part_of(Study, job["part"]), job["variant"]
+    basis = reduce(Structure.model_validate(job["structure"]), study.reduction)
+    surrogates = selected_surrogates(selection, variant, runs)
+    write_frame(free, response_table(study, basis, variant, "free", surrogates))
+    write_frame(forced, response_table(study, basis, variant, "forced", surrogates))
+    write_frame(energy, energy_table(study, basis, variant, surrogates))
+
+
+if __name__ == "__main__":
+    command(
+        main,
+        {
+            "selection": "the selected runs",
+            "runs": "the folder of all runs",
+            "free": "the free response",
+            "forced": "the forced response",
+            "energy": "the energies",
+        },
+        expected=(EquilibriumNotFound, ArithmeticError),
+    )

@@ -1,0 +1,17 @@
+"""The surrogates of a selection."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+from flexsurr.surrogates import load
+
+
+def selected_surrogates(selection: Path, variant: str, runs: Path) -> dict[str, Any]:
+    """The surrogates selected for `variant`, by the names under which tables show them."""
+    chosen = json.loads(selection.read_text(encoding="utf-8")).get(variant, {})
+    return {
+        name: load(runs / entry["run_id"] / "weights.npz")
+        for name, entry in chosen.items()
+        if isinstance(entry, dict)
+    }

@@ -1,0 +1,107 @@
+"""Train one surrogate: a trial of a sweep on the data of one variant."""
+
+import json
+import logging
+import math
+import time
+from pathlib import Path
+from typing import Any
+
+from flexsurr.cli.command import Job, command
+from flexsurr.config.sweep import Trial
+from flexsurr.storage import replacing, write_json
+from flexsurr.surrogates import save
+from flexsurr.training import Fit, fit, load_dataset
+from flexsurr.training.tracking import Store, tracked
+
+log = logging.getLogger(__name__)
+
+PROGRESS_EVERY_S = 5.0
+
+
+def main(job: Job, manifest: Path, store: Path, folder: Path) -> None:
+    """Write parameters.json, fit.json, history.parquet and weights.npz of the run into `folder`.
+
+    A trial that diverges ends well, with status "failed", its reason, and an empty weights.npz where
+    it has no weights to keep.
+    """
+    trial = Trial.model_validate(job["trial"])
+    dataset = load_dataset(manifest)
+    described = {**job, "dataset_sha256": dataset.sha256}
+    write_json(folder / "parameters.json", described)
+    page_store = Store(**json.loads(store.read_text(encoding="utf-8")))
+    shown = {"variant": job["variant"], **job["trial"], "dataset_sha256": dataset.sha256}
+    with tracked(page_store, job["study"], job["run_id"], shown) as page:
+        next_s = time.monotonic()
+
+        def report(epoch: int, train_loss: float, validation_loss: float, wall_s: float) -> None:
+            nonlocal next_s
+            page.epoch(epoch, train_loss, validation_loss)
+            if time.monotonic() >= next_s:
+                log.info(
+                    "epoch %d, %.1f s: training %.3e, validation %.3e",
+                    epoch,
+                    wall_s,
+                    train_loss,
+                    validation_loss,
+                )
+                next_s = time.monotonic() + PROGRESS_EVERY_S
+
+        result = fit(trial, dataset, folder, report=report)
+        figures = _figures(job, trial, result, dataset.sha256)
+        page.status, page.reason = result.status, result.reason
+        _write_weights(folder / "weights.npz", result)
+        with replacing(folder / "history.parquet") as beside:
+            result.history.to_parquet(beside, index=False)
+        write_json(folder / "fit.json", figures)
+        files = [folder / name for name in ("parameters.json", "weights.npz", "history.parquet")]
+        page.keep(figures, {"dataset_sha256": dataset.sha256}, files)
+    log.info(
+        "%s after %d epochs, %.1f s%s", result.status, result.epochs, result.wall_s, _because(result.reason)
+    )
+
+
+def _figures(job: Job, trial: Trial, result: Fit, dataset_sha256: str) -> dict[str, Any]:
+    return {
+        "run_id": job["run_id"],
+        "study": job["study"],
+        "variant": job["variant"],
+        "status": result.status,
+        "reason": result.reason,
+        "architecture": trial.architecture,
+        "hidden": "x".join(str(width) for width in trial.hidden),
+        "activation": trial.activation,
+        "degree": trial.degree,
+        "optimiser": trial.optimiser,
+        "seed": trial.seed,
+        "epochs": result.epochs,
+        "best_epoch": result.best_epoch,
+        "wall_s": result.wall_s,
+        "parameters": result.parameters,
+        "train_nmse": _finite(result.train_nmse),
+        "validation_nmse": _finite(result.validation_nmse),
+        "dataset_sha256": dataset_sha256,
+    }
+
+
+def _write_weights(path: Path, result: Fit) -> None:
+    if result.status == "finished":
+        save(result.surrogate, path)
+    else:
+        with replacing(path) as beside:
+            beside.touch()
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def _because(reason: str) -> str:
+    return f": {reason}" if reason else ""
+
+
+if __name__ == "__main__":
+    command(
+        main,
+        {"manifest": "of the dataset", "store": "the address of the tracking store", "folder": "of the run"},
+    )

@@ -1,0 +1,202 @@
+"""The jobs of a configuration: for each rule, exactly the values that what it makes depends on.
+
+A job is a dictionary that goes to its command as JSON. Snakemake runs a job again when its dictionary
+changes, so a value that is missing here is a stale result, and a value too many is a needless hour.
+"""
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fnmatch import fnmatch
+from functools import cached_property
+from typing import Any
+
+from flexsurr.config.errors import ConfigurationError
+from flexsurr.config.part import values_of
+from flexsurr.config.settings import Configuration, ResolvedStudy
+from flexsurr.config.study import Variant
+from flexsurr.config.sweep import Trial
+from flexsurr.training.sweep import expand, run_id
+
+Job = dict[str, Any]
+
+RESPONSE_KINDS = ("free", "forced")
+
+# What the trajectories of a dataset depend on, apart from the structure, the variant and their numbers.
+DATASET = (
+    "seed",
+    "reduction",
+    "dataset.duration_s",
+    "dataset.step_s",
+    "dataset.initial_conditions",
+    "dataset.integrator",
+)
+SELECTION = (
+    "seed",
+    "reduction",
+    "dataset.initial_conditions",
+    "evaluation.duration_s",
+    "evaluation.output_step_s",
+    "evaluation.long_responses",
+)
+STATICS = ("reduction", "statics")
+VALIDATION = ("reduction", "variants", "evaluation.force")
+RESPONSES = (
+    "seed",
+    "reduction",
+    "dataset.initial_conditions",
+    "evaluation.duration_s",
+    "evaluation.output_step_s",
+    "evaluation.simulations",
+    "evaluation.force",
+    "evaluation.integrators",
+)
+COST = (*RESPONSES, "evaluation.described_simulations", "evaluation.repeats")
+
+
+@dataclass(frozen=True)
+class Run:
+    """One training run: a trial of a sweep on the data of one variant."""
+
+    study: str
+    variant: Variant
+    trial: Trial
+
+
+class Plan:
+    """Every job of a configuration. Raises ConfigurationError for a sweep whose combinations don't fit."""
+
+    def __init__(self, configuration: Configuration) -> None:
+        self.settings = configuration.settings
+        self.studies: Mapping[str, ResolvedStudy] = {study.name: study for study in configuration.studies}
+        self._trials = {study.name: _trials(study) for study in configuration.studies}
+
+    @cached_property
+    def runs(self) -> dict[str, Run]:
+        """Training runs by their run_id."""
+        return {
+            run_id(name, variant, trial): Run(name, variant, trial)
+            for name, study in self.studies.items()
+            for variant in study.study.variants
+            for trials in self._trials[name].values()
+            for trial in trials
+        }
+
+    def runs_of(self, study: str) -> list[str]:
+        """The run_ids of one study."""
+        return [key for key, run in self.runs.items() if run.study == study]
+
+    def variants(self, study: str) -> tuple[Variant, ...]:
+        """The variants of one study's reference model."""
+        return self.studies[study].study.variants
+
+    def shards(self, study: str) -> int:
+        """Number of shards of each dataset of one study."""
+        return self.studies[study].study.dataset.shards
+
+    def simulate(self, study: str, variant: str, shard: int) -> Job:
+        """One shard: trajectories `first` to `first + count − 1`."""
+        dataset = self.studies[study].study.dataset
+        first = shard * dataset.trajectories_per_shard
+        return {
+            **self._dataset(study, variant),
+            "configuration": self.dataset_hash(study, variant),
+            "first": first,
+            "count": min(dataset.trajectories_per_shard, dataset.trajectories - first),
+        }
+
+    def dataset_hash(self, study: str, variant: str) -> str:
+        """The hash of every value that the trajectories of a dataset depend on."""
+        canonical = json.dumps(self._dataset(study, variant), sort_keys=True)
+        return hashlib.sha256(canonical.encode()).hexdigest()[:16]
+
+    def manifest(self, study: str, variant: str) -> Job:
+        """The manifest of one dataset."""
+        settings = self.studies[study].study
+        return {
+            "study": study,
+            "variant": variant,
+            "seed": settings.seed,
+            "configuration": self.dataset_hash(study, variant),
+            "trajectories": settings.dataset.trajectories,
+            "training_fraction": settings.dataset.training_fraction,
+        }
+
+    def store(self) -> Job:
+        """The tracking store."""
+        return {"uri": self.settings.tracking.uri, "studies": list(self.settings.studies)}
+
+    def train(self, key: str) -> Job:
+        """One training run."""
+        run = self.runs[key]
+        trial = run.trial.model_dump(mode="json")
+        return {"run_id": key, "study": run.study, "variant": run.variant, "trial": trial}
+
+    def select(self, study: str) -> Job:
+        """The judgement of all runs of a study; `sweeps` maps sweep and variant to run_ids."""
+        variants = self.variants(study)
+        sweeps = {
+            sweep: {variant: [run_id(study, variant, trial) for trial in trials] for variant in variants}
+            for sweep, trials in self._trials[study].items()
+        }
+        return {**self._part(study, SELECTION), "study": study, "sweeps": sweeps}
+
+    def statics(self, study: str) -> Job:
+        """Static deflection and natural frequencies."""
+        return self._part(study, STATICS)
+
+    def validation(self, study: str) -> Job:
+        """The reduced model against the full one."""
+        return self._part(study, VALIDATION)
+
+    def respond(self, study: str, variant: str) -> Job:
+        """Responses and energies of the selected surrogates."""
+        return {**self._part(study, RESPONSES), "variant": variant}
+
+    def cost(self, study: str, variant: str, response: str) -> Job:
+        """Wall times and errors of everything, under one response."""
+        return {**self._part(study, COST), "study": study, "variant": variant, "response": response}
+
+    def files(self, study: str, read: str) -> list[str]:
+        """The files below the results that hold what a figure or table `read`s (flexsurr.report)."""
+        runs = {"metrics": "metrics.json", "history": "history.parquet"}
+        if read == "structure":
+            return []
+        if read in runs:
+            return [f"runs/{key}/{runs[read]}" for key in self.runs_of(study)]
+        variants = self.variants(study)
+        names = ["statics", "frequencies", "validation"]
+        names += [f"response-{variant}-{response}" for variant in variants for response in RESPONSE_KINDS]
+        names += [f"energy-{variant}" for variant in variants]
+        names += [f"cost-{variant}-{response}" for variant in variants for response in RESPONSE_KINDS]
+        found = [f"evaluation/{study}/{name}.parquet" for name in names if fnmatch(name, read)]
+        if not found:
+            raise ValueError(f"no rule makes {read}")
+        return found
+
+    def draw(self, study: str, figures: Sequence[str], reads: Sequence[str]) -> Job:
+        """Figures that read the same."""
+        structure = self.studies[study].structure.model_dump(mode="json")
+        return {"figures": list(figures), **({"structure": structure} if "structure" in reads else {})}
+
+    def _part(self, study: str, keys: tuple[str, ...]) -> Job:
+        resolved = self.studies[study]
+        structure = resolved.structure.model_dump(mode="json")
+        return {"structure": structure, "part": values_of(resolved.study, keys)}
+
+    def _dataset(self, study: str, variant: str) -> Job:
+        return {**self._part(study, DATASET), "study": study, "variant": variant}
+
+
+def _trials(study: ResolvedStudy) -> dict[str, tuple[Trial, ...]]:
+    trials: dict[str, tuple[Trial, ...]] = {}
+    problems = []
+    for name, sweep in study.sweeps.items():
+        try:
+            trials[name] = tuple(expand(sweep))
+        except ValueError as error:
+            problems.append(f"{study.study.sweeps[name]}: {' '.join(str(error).split())}")
+    if problems:
+        raise ConfigurationError(problems)
+    return trials

@@ -1,0 +1,143 @@
+"""Bad configurations: each is refused with one line that names file, key, value and what is allowed."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+import yaml
+
+from flexsurr.config.errors import ConfigurationError
+from flexsurr.config.settings import load
+from flexsurr.workflow.plan import Plan
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+CONFIG = "config/config.yaml"
+STUDY = "config/studies/cantilever.yaml"
+STRUCTURE = "config/structures/cantilever.yaml"
+SWEEP = "config/sweeps/cantilever.yaml"
+
+
+@pytest.fixture
+def root(tmp_path: Path) -> Path:
+    """A copy of the configuration that may be spoilt."""
+    shutil.copytree(REPOSITORY / "config", tmp_path / "config")
+    return tmp_path
+
+
+def spoil(root: Path, file: str, keys: str, value: object) -> None:
+    """Set the value at dotted `keys` of a YAML file; numbers are places in lists."""
+    content = yaml.safe_load((root / file).read_text())
+    inner = content
+    *path, last = [int(key) if key.isdigit() else key for key in keys.split(".")]
+    for key in path:
+        inner = inner.setdefault(key, {}) if isinstance(inner, dict) else inner[key]
+    inner[last] = value
+    (root / file).write_text(yaml.safe_dump(content))
+
+
+def refusal(root: Path, *files: str) -> str:
+    with pytest.raises(ConfigurationError) as caught:
+        Plan(load(root, [CONFIG, *files]))
+    return str(caught.value)
+
+
+BAD_VALUES = [
+    (CONFIG, "resutls", "x", ["resutls", "'x'", "did you mean 'results'", "tracking"]),
+    (CONFIG, "studies", [], ["studies", "[]", "at least one value"]),
+    (CONFIG, "studies", ["cantilver"], ["studies", "'cantilver'", "allowed: cantilever"]),
+    (CONFIG, "timing.cores", 0, ["timing.cores", "0", "greater than or equal to 1"]),
+    (CONFIG, "overrides.wing", {"seed": 1}, ["overrides.wing", "no such study", "cantilever"]),
+    (CONFIG, "overrides.cantilever.sede", 1, ["overrides.cantilever.sede", "1", "did you mean 'seed'"]),
+    (STRUCTURE, "length_mm", 1000.0, ["length_mm", "1000.0", "did you mean 'length_m'"]),
+    (STRUCTURE, "length_m", "1 m", ["length_m", "'1 m'", "number"]),
+    (STRUCTURE, "length_m", -1.0, ["length_m", "-1.0", "greater than 0"]),
+    (STRUCTURE, "length_m", float("nan"), ["length_m", "nan", "finite number"]),
+    (STRUCTURE, "length_m", float("inf"), ["length_m", "inf", "finite number"]),
+    (STRUCTURE, "length_m", True, ["length_m", "true is a truth value", "number"]),
+    (STRUCTURE, "length_m", None, ["length_m", "None", "number"]),
+    (STRUCTURE, "elements", 0, ["elements", "0", "greater than or equal to 1"]),
+    (STRUCTURE, "elements", 10.5, ["elements", "10.5", "integer"]),
+    (STRUCTURE, "joints", [], ["joints", "at least one"]),
+    (STRUCTURE, "joints", ["in_plain"], ["joints[0]", "'in_plain'", "did you mean 'in_plane'", "torsion"]),
+    (STRUCTURE, "joints", ["torsion"], ["torsional_stiffness_N_m2: needed"]),
+    (STUDY, "reduction.modes", 1000, ["reduction.modes", "1000", "allowed: 1 to"]),
+    (STUDY, "reduction.modes", 0, ["reduction.modes", "0", "greater than or equal to 1"]),
+    (STUDY, "structure", "config/structures/absent.yaml", ["structure", "absent.yaml", "no file"]),
+    (STUDY, "sweeps.default", "config/sweeps/absent.yaml", ["sweeps.default", "absent.yaml", "no file"]),
+    (STUDY, "variants", ["hamiltonain"], ["variants[0]", "'hamiltonain'", "did you mean 'hamiltonian'"]),
+    (STUDY, "dataset.duration", 0.2, ["dataset.duration", "0.2", "did you mean 'duration_s'"]),
+    (STUDY, "dataset.training_fraction", 1.0, ["dataset.training_fraction", "1.0", "less than 1"]),
+    (STUDY, "dataset", 5, ["dataset", "5", "keys with values"]),
+    (STUDY, "evaluation.integrators", [{"method": "rk5"}], ["integrators[0].method", "'rk5'", "rk4"]),
+    (STUDY, "evaluation.integrators", [{"method": "rk4"}], ["integrators[0]", "takes step_s"]),
+    (SWEEP, "spaces.0.activation", ["sigmoid"], ["activation[0]", "'sigmoid'", "tanh"]),
+    (SWEEP, "spaces.0.activation", "tanh", ["spaces[0].activation", "'tanh'", "list"]),
+    (SWEEP, "spaces.0.hidden", [], ["spaces[0].hidden", "[]", "at least one value"]),
+    (SWEEP, "spaces.0.hidden", None, ["spaces[0].hidden", "without values"]),
+    (SWEEP, "spaces.0.hiden", [[8]], ["spaces[0].hiden", "did you mean 'hidden'"]),
+    (SWEEP, "spaces.0.architecture", "hmm", ["spaces[0].architecture", "'hmm'", "hnn"]),
+    (SWEEP, "spaces.0.optimiser", ["adam"], ["adam takes learning_rate and batch_size"]),
+    (SWEEP, "spaces.0.degree", [4], ["no degree"]),
+    (SWEEP, "spaces", [], ["spaces", "[]", "at least one value"]),
+    (SWEEP, "search", "random", ["draws is given exactly when search is random"]),
+]
+
+
+@pytest.mark.parametrize(("file", "keys", "value", "words"), BAD_VALUES)
+def test_a_bad_value_is_refused_with_file_key_value_and_what_is_allowed(root, file, keys, value, words):
+    spoil(root, file, keys, value)
+    message = refusal(root)
+    assert all(word in message for word in [file, *words]), message
+    assert "Traceback" not in message
+    assert len(message.splitlines()) <= 2
+
+
+@pytest.mark.parametrize("file", [CONFIG, STUDY, STRUCTURE, SWEEP])
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        ("key: [1, 2", ["line 2", "is not YAML"]),
+        ("a: 1\n\tb: 2", ["line 2", "is not YAML"]),
+        ("just words", ["'just words'", "keys with values"]),
+        ("", ["None", "keys with values"]),
+        ("seed: 1\nseed: 2", ["line 2", "'seed' is given twice"]),
+    ],
+)
+def test_a_file_that_is_not_what_it_should_be_is_named(root, file, content, words):
+    (root / file).write_text(content + "\n")
+    message = refusal(root)
+    assert all(word in message for word in [file, *words]), message
+
+
+def test_binary_rubbish_is_named(root):
+    (root / STRUCTURE).write_bytes(b"\xff\xfe\x00\x01")
+    assert f"{STRUCTURE}: is not text" in refusal(root)
+
+
+def test_a_missing_key_is_named(root):
+    content = yaml.safe_load((root / STRUCTURE).read_text())
+    del content["length_m"]
+    (root / STRUCTURE).write_text(yaml.safe_dump(content))
+    assert f"{STRUCTURE}: length_m: missing" in refusal(root)
+
+
+def test_every_problem_is_told_at_once(root):
+    spoil(root, STRUCTURE, "length_m", -1.0)
+    spoil(root, STRUCTURE, "elements", 0)
+    spoil(root, SWEEP, "spaces.0.activation", ["sigmoid"])
+    lines = refusal(root).splitlines()
+    assert len(lines) == 3
+    assert [line.split(":")[0] for line in lines] == [STRUCTURE, STRUCTURE, SWEEP]
+
+
+def test_a_value_from_a_preset_is_blamed_on_the_preset(root):
+    preset = "config/presets/mine.yaml"
+    (root / preset).write_text("overrides: {cantilever: {dataset: {step_s: -1}}}\n")
+    message = refusal(root, preset)
+    assert message.startswith(f"{preset}: overrides.cantilever.dataset.step_s: -1 is not allowed")
+
+
+def test_a_value_from_the_command_line_is_blamed_on_it(root):
+    effective = yaml.safe_load((root / CONFIG).read_text()) | {"resutls": "x"}
+    with pytest.raises(ConfigurationError, match="--config: resutls: unknown key"):
+        load(root, [CONFIG], effective)

@@ -1,0 +1,72 @@
+# Reference data: shards of trajectories, their manifest; statics; full against reduced order.
+
+
+wildcard_constraints:
+    study="[A-Za-z0-9_]+",
+    variant="hamiltonian|as_printed",
+    response="free|forced",
+    shard=r"\d{4,}",
+
+
+rule simulate_shard:
+    output:
+        f"{RESULTS}/datasets/{{study}}/{{variant}}/shard-{{shard}}.parquet",
+    log:
+        f"{RESULTS}/logs/simulate/{{study}}-{{variant}}-{{shard}}.log",
+    params:
+        job=job("simulate", "study", "variant", "shard"),
+        code=code("simulate"),
+    message:
+        "simulating shard {wildcards.shard} of {wildcards.study}, {wildcards.variant}"
+    shell:
+        "python -m flexsurr.cli.simulate --job {params.job:q} --output {output:q} > {log:q} 2>&1"
+
+
+rule manifest:
+    input:
+        shards=lambda w: expand(
+            f"{RESULTS}/datasets/{w.study}/{w.variant}/shard-{{shard:04d}}.parquet",
+            shard=range(plan.shards(w.study)),
+        ),
+    output:
+        f"{RESULTS}/datasets/{{study}}/{{variant}}/manifest.json",
+    log:
+        f"{RESULTS}/logs/manifest/{{study}}-{{variant}}.log",
+    params:
+        job=job("manifest", "study", "variant"),
+        code=code("manifest"),
+    message:
+        "checking the dataset of {wildcards.study}, {wildcards.variant}"
+    shell:
+        "python -m flexsurr.cli.manifest --job {params.job:q} --shards {input.shards:q} --output {output:q}"
+        " > {log:q} 2>&1"
+
+
+rule statics:
+    output:
+        statics=f"{RESULTS}/evaluation/{{study}}/statics.parquet",
+        frequencies=f"{RESULTS}/evaluation/{{study}}/frequencies.parquet",
+    log:
+        f"{RESULTS}/logs/statics/{{study}}.log",
+    params:
+        job=job("statics", "study"),
+        code=code("statics"),
+    message:
+        "static deflection and natural frequencies of {wildcards.study}"
+    shell:
+        "python -m flexsurr.cli.statics --job {params.job:q}"
+        " --statics {output.statics:q} --frequencies {output.frequencies:q} > {log:q} 2>&1"
+
+
+rule validation:
+    output:
+        f"{RESULTS}/evaluation/{{study}}/validation.parquet",
+    log:
+        f"{RESULTS}/logs/validation/{{study}}.log",
+    params:
+        job=job("validation", "study"),
+        code=code("validate"),
+    message:
+        "full and reduced order of {wildcards.study} side by side"
+    shell:
+        "python -m flexsurr.cli.validate --job {params.job:q} --output {output:q} > {log:q} 2>&1"
