@@ -5,8 +5,17 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+from scipy.optimize import root
 
-from flexsurr.beam import ModalBasis, SineTipForce, draw_initial_conditions, loaded, reduced_order
+from flexsurr.beam import (
+    EquilibriumNotFound,
+    Load,
+    ModalBasis,
+    SineTipForce,
+    draw_initial_conditions,
+    loaded,
+    reduced_order,
+)
 from flexsurr.config.study import Integrator, Study, TipForce, Variant
 from flexsurr.simulation import simulate
 from flexsurr.simulation.rhs import Array, Model
@@ -54,13 +63,13 @@ def free_cases(basis: ModalBasis, study: Study, first: int, count: int) -> list[
 
 
 def forced_cases(basis: ModalBasis, study: Study, first: int, count: int) -> list[Case]:
-    """Responses from rest to the tip force, each acting from 0 to a random end [0, longest_s)."""
+    """Responses from rest to the tip force, each acting from 0 to a random end in (0, longest_s]."""
     force = study.evaluation.force
-    rest = np.zeros(2 * basis.modes.shape[1])
-    ends = (
-        np.random.default_rng([study.seed, first + k]).uniform(0.0, force.longest_s) for k in range(count)
-    )
-    return [Case(number=k, x0=rest.copy(), load=tip_force(force, end_s)) for k, end_s in enumerate(ends)]
+    cases = []
+    for number in range(first, first + count):
+        end_s = force.longest_s * (1.0 - np.random.default_rng([study.seed, number]).random())
+        cases.append(Case(number=number, x0=rest_state(basis), load=tip_force(force, end_s)))
+    return cases
 
 
 def evaluation_cases(basis: ModalBasis, study: Study, response: Response) -> list[Case]:
@@ -80,9 +89,25 @@ def tip_force(force: TipForce, end_s: float) -> SineTipForce:
     )
 
 
+def rest_state(basis: ModalBasis, load: Load | None = None) -> Array:
+    """The state (2r,) of the reduced model at rest under gravity and `load` (eq. 8, projected).
+
+    Raises EquilibriumNotFound if none is found.
+    """
+    model = reduced_order(basis, "hamiltonian", "numpy")
+    field = model if load is None else loaded(model, basis, load, "numpy")
+    r = basis.modes.shape[1]
+    found = root(
+        lambda eta: field.derivative(0.0, np.concatenate([eta, np.zeros(r)]))[r:], np.zeros(r), tol=1e-12
+    )
+    if not found.success:
+        raise EquilibriumNotFound(f"reduced model of {basis.structure.name}, load {load}: {found.message}")
+    return np.concatenate([found.x, np.zeros(r)])
+
+
 def sample_times(duration_s: float, step_s: float) -> Array:
     """0, step, …, duration [s], both ends included."""
-    return np.linspace(0.0, duration_s, max(int(round(duration_s / step_s)), 1) + 1)
+    return np.linspace(0.0, duration_s, max(round(duration_s / step_s), 1) + 1)
 
 
 def under(model: Model, basis: ModalBasis, case: Case, implementation: str) -> Model:
@@ -100,7 +125,7 @@ def reference_solution(basis: ModalBasis, variant: Variant, case: Case, t: Array
     if not trajectory.completed:
         raise ArithmeticError(f"reference {variant}, simulation {case.number}: {trajectory.reason}")
     tip = model.tip(trajectory.x)
-    at_rest = model.tip(np.zeros_like(case.x0))
+    at_rest = model.tip(rest_state(basis))
     peak_m = float(np.linalg.norm(tip - at_rest, axis=1).max())
     return Reference(case=case, t=t, x=trajectory.x, tip=tip, peak_m=peak_m)
 

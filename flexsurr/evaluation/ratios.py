@@ -12,6 +12,7 @@ SETUP = ["model", "implementation", "integrator"]
 
 BASELINES = ("described", "numpy", "compiled")
 
+# Those of cost.csv, which others read.
 COST_COLUMNS = (
     "study",
     "variant",

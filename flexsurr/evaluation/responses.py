@@ -9,7 +9,7 @@ import pandas as pd
 from flexsurr.beam import ModalBasis, reduced_order
 from flexsurr.config.study import Integrator, Study, Variant
 from flexsurr.evaluation.accuracy import tip_error_percent
-from flexsurr.evaluation.cases import TIGHT, Reference, Response, evaluation_cases, reference_solution
+from flexsurr.evaluation.cases import Reference, Response, evaluation_cases, reference_solution
 from flexsurr.evaluation.contenders import Contender, contenders
 from flexsurr.simulation import simulate
 
@@ -49,11 +49,9 @@ def response_table(
         for c in contenders(basis, variant, surrogates)
         if c.implementation == "compiled" and c.model != "rom"
     ]
-    frames = [_frame(variant, response, "reference", reference, reference.tip)]
-    for contender in models:
-        frames.append(
-            _frame(variant, response, contender.model, reference, _tip(contender, basis, variant, reference))
-        )
+    tips = {"reference": reference.tip}
+    tips |= {contender.model: _tip(contender, basis, variant, reference) for contender in models}
+    frames = [_frame(variant, response, model, reference, tip) for model, tip in tips.items()]
     return pd.concat(frames, ignore_index=True)
 
 

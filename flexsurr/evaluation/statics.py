@@ -2,23 +2,22 @@
 
 import numpy as np
 import pandas as pd
-from scipy.optimize import brentq, root
+from scipy.optimize import brentq
 
 from flexsurr.beam import (
     DeadTipForce,
-    EquilibriumNotFound,
     ModalBasis,
     elastica_tip,
     find_equilibrium,
-    loaded,
     natural_modes,
     reduced_order,
     tip_position,
 )
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Study
+from flexsurr.evaluation.cases import rest_state
 from flexsurr.evaluation.published import FREQUENCIES_RAD_S
-from flexsurr.simulation.rhs import Array, Model
+from flexsurr.simulation.rhs import Array
 
 STATIC_COLUMNS = ("load_N", "x_exact_m", "z_exact_m", "x_fom_m", "z_fom_m", "x_rom_m", "z_rom_m")
 FREQUENCY_COLUMNS = (
@@ -28,7 +27,6 @@ FREQUENCY_COLUMNS = (
     "rom_rad_s",
     "published_fom_rad_s",
     "published_rom_rad_s",
-    "exact_rad_s",
 )
 
 
@@ -40,14 +38,12 @@ def static_tip(study: Study, basis: ModalBasis) -> pd.DataFrame:
     columns of the exact curve are NaN. Raises EquilibriumNotFound where either model has none.
     """
     structure = basis.structure
+    model = reduced_order(basis, "hamiltonian", "numpy")
     rows = []
-    state = np.zeros(2 * basis.modes.shape[1])
     for load_N in sorted(study.statics.tip_loads_N):
         force = DeadTipForce(force_N=(0.0, 0.0, load_N))
         fom = tip_position(structure, find_equilibrium(structure, force))
-        model = loaded(reduced_order(basis, "hamiltonian", "numpy"), basis, force, "numpy")
-        state = _rest(model, state, load_N)
-        rom = reduced_order(basis, "hamiltonian", "numpy").tip(state)
+        rom = model.tip(rest_state(basis, force))
         x_exact, z_exact = _exact_tip(structure, load_N)
         rows.append((load_N, x_exact, z_exact, fom[0], fom[2], rom[0], rom[2]))
     return pd.DataFrame(rows, columns=list(STATIC_COLUMNS)).astype(float)
@@ -56,9 +52,9 @@ def static_tip(study: Study, basis: ModalBasis) -> pd.DataFrame:
 def natural_frequencies(basis: ModalBasis) -> pd.DataFrame:
     """Natural frequencies [rad/s] about the basis' equilibrium: full and reduced order (Table 3).
 
-    Columns `FREQUENCY_COLUMNS`, one row per mode of the full-order model. NaN where the reduced model
-    has no such mode, nothing is published, or no exact value is known. The exact ones are those of the
-    straight clamped Euler-Bernoulli beam that bends out of plane only.
+    Columns `FREQUENCY_COLUMNS` and exact_rad_s, one row per mode of the full-order model. NaN where
+    the reduced model has no such mode, nothing is published, or no exact value is known. The exact ones
+    are those of the straight clamped Euler-Bernoulli beam that bends out of plane only.
     """
     structure = basis.structure
     fom, _ = natural_modes(structure, basis.equilibrium)
@@ -71,17 +67,7 @@ def natural_frequencies(basis: ModalBasis) -> pd.DataFrame:
         ("exact_rad_s", _exact_frequencies(structure, fom.size)),
     ):
         frame[name] = pd.Series(np.asarray(values, dtype=float)).reindex(frame.index)
-    return frame[list(FREQUENCY_COLUMNS)]
-
-
-def _rest(model: Model, start: Array, load_N: float) -> Array:
-    """The state (2r,) at rest in which ẋ = 0, sought from `start`: eq. 8 for any model."""
-    r = start.size // 2
-    zeros = np.zeros(r)
-    found = root(lambda q: model.derivative(0.0, np.concatenate([q, zeros]))[r:], start[:r], tol=1e-12)
-    if not found.success:
-        raise EquilibriumNotFound(f"reduced model, tip load {load_N:g} N: {found.message}")
-    return np.concatenate([found.x, zeros])
+    return frame[[*FREQUENCY_COLUMNS, "exact_rad_s"]]
 
 
 def _is_elastica(structure: Structure) -> bool:

@@ -3,9 +3,9 @@
 import numpy as np
 import pandas as pd
 
-from flexsurr.beam import ModalBasis, full_order, loaded, reduced_order
+from flexsurr.beam import ModalBasis, find_equilibrium, full_order, loaded, reduced_order
 from flexsurr.config.study import Integrator, Study
-from flexsurr.evaluation.cases import tip_force
+from flexsurr.evaluation.cases import rest_state, tip_force
 from flexsurr.simulation import simulate
 
 VALIDATION_COLUMNS = ("variant", "model", "t_s", "tip_x_m", "tip_z_m")
@@ -27,14 +27,15 @@ def validation_table(study: Study, basis: ModalBasis) -> pd.DataFrame:
     structure = basis.structure
     t = np.linspace(0.0, DURATION_S, round(DURATION_S / STEP_S) + 1)
     force = tip_force(study.evaluation.force, DURATION_S)
+    equilibrium = find_equilibrium(structure)
+    rest = np.concatenate([equilibrium, np.zeros_like(equilibrium)])
     frames = []
     for variant in study.variants:
         fom = full_order(structure, variant, "compiled")
         rom = reduced_order(basis, variant, "compiled")
-        rest = np.concatenate([basis.equilibrium, np.zeros_like(basis.equilibrium)])
         for name, model, place, start in (
             ("fom", fom, structure, rest),
-            ("rom", rom, basis, np.zeros(2 * basis.modes.shape[1])),
+            ("rom", rom, basis, rest_state(basis)),
         ):
             trajectory = simulate(loaded(model, place, force, "compiled"), t, start, INTEGRATOR)
             tip = model.tip(trajectory.x)

@@ -4,14 +4,13 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from flexsurr.report.style import (
-    BLACK,
-    BLUE,
     COLOURS,
+    GREY,
     PAGE_IN,
     VARIANTS,
-    VERMILION,
     letter,
     new_figure,
     styled,
@@ -20,7 +19,7 @@ from flexsurr.report.style import (
 WINDOW_S = (0.5, 1.0)
 """The part of the response that Fig. 9 of the study shows."""
 
-VARIANT_COLOURS = {"hamiltonian": BLUE, "as_printed": VERMILION}
+VARIANT_LINES = {"hamiltonian": "-", "as_printed": (0, (3, 1.5))}
 
 
 @styled
@@ -34,9 +33,9 @@ def figure_08(statics: pd.DataFrame) -> Figure:
     load = statics["load_N"]
     for axis, height in (("x", 0.62), ("z", 0.55)):
         exact = statics[f"{axis}_exact_m"]
-        left.plot(load, exact, color=BLACK, linewidth=0.9, zorder=1)
+        left.plot(load, exact, color=COLOURS["exact"], linewidth=1.6, zorder=1)
         left.plot(load, statics[f"{axis}_fom_m"], "o", color=COLOURS["fom"], markerfacecolor="none", zorder=3)
-        left.plot(load, statics[f"{axis}_rom_m"], "x", color=BLUE, markersize=3.5, zorder=2)
+        left.plot(load, statics[f"{axis}_rom_m"], "x", color=COLOURS["rom"], markersize=3.5, zorder=2)
         at = int(height * len(load))
         anchor = statics[f"{axis}_rom_m" if exact.isna().all() else f"{axis}_exact_m"].iloc[at]
         left.annotate(
@@ -49,11 +48,16 @@ def figure_08(statics: pd.DataFrame) -> Figure:
             fontsize=9,
         )
     handles = [
-        left.plot([], [], color=BLACK, linewidth=0.9)[0],
+        left.plot([], [], color=COLOURS["exact"], linewidth=1.6)[0],
         left.plot([], [], "o", color=COLOURS["fom"], markerfacecolor="none")[0],
-        left.plot([], [], "x", color=BLUE, markersize=3.5)[0],
+        left.plot([], [], "x", color=COLOURS["rom"], markersize=3.5)[0],
     ]
-    left.legend(handles, ["exact elastica", "full order", "reduced order"], loc="center right")
+    left.legend(
+        handles,
+        ["exact elastica", "full order", "reduced order"],
+        loc="center left",
+        bbox_to_anchor=(0.02, 0.66),
+    )
     left.set(xlabel="tip load [N]", ylabel="tip position [m]", title="tip under a dead load along z")
     _static_errors(right, statics)
     letter((left, right))
@@ -65,7 +69,7 @@ def _static_errors(ax: Axes, statics: pd.DataFrame) -> None:
     judge, title = ("exact", "distance from the exact tip")
     if statics["x_exact_m"].isna().all():
         judge, title = ("fom", "distance from the full-order tip")
-    styles = {"fom": ("o", COLOURS["fom"], "full order"), "rom": ("x", BLUE, "reduced order")}
+    styles = {"fom": ("o", COLOURS["fom"], "full order"), "rom": ("x", COLOURS["rom"], "reduced order")}
     loaded = statics[statics["load_N"] != 0.0]
     for model, (marker, colour, name) in styles.items():
         if model == judge:
@@ -92,43 +96,45 @@ def _static_errors(ax: Axes, statics: pd.DataFrame) -> None:
 def figure_09(validation: pd.DataFrame) -> Figure:
     """Tip height under a harmonic tip force: full and reduced order, gyroscopic term kept and dropped.
 
-    `validation`: columns variant, model ("fom", "rom"), t_s, tip_x_m, tip_z_m.
+    `validation`: columns variant, model ("fom", "rom"), t_s, tip_x_m, tip_z_m. The models have their
+    colours, the variants their line styles; below, the differences that the first panel hides.
     """
     start_s, end_s = WINDOW_S
     if validation["t_s"].max() <= start_s:
         start_s = 0.0
     shown = validation[validation["t_s"].between(start_s, end_s)]
     z = shown.pivot_table(index="t_s", columns=["variant", "model"], values="tip_z_m")
-    variants = [variant for variant in VARIANTS if variant in z.columns.get_level_values(0)]
+    variants = [variant for variant in VARIANT_LINES if variant in z.columns.get_level_values(0)]
+    both = len(variants) == 2
 
-    figure = new_figure(PAGE_IN, 1.55 * len(variants) + 1.65)
-    axes = list(figure.subplots(len(variants) + 1, 1, sharex=True))
-    for ax, variant in zip(axes, variants, strict=False):
-        ax.plot(z.index, z[variant, "fom"], color=COLOURS["fom"], linewidth=2.2, label="full order")
-        ax.plot(z.index, z[variant, "rom"], color=BLACK, linewidth=0.9, label="reduced order")
-        ax.set(ylabel="tip height z [m]", title=VARIANTS[variant])
-    axes[0].legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, borderaxespad=0.0)
-
-    last = axes[-1]
-    if len(variants) == 2:
-        for model, style in (("fom", "-"), ("rom", (0, (4, 1.5)))):
-            difference = 1e3 * (z["as_printed", model] - z["hamiltonian", model])
-            name = {"fom": "full order", "rom": "reduced order"}[model]
-            last.plot(z.index, difference, color=VERMILION, linestyle=style, label=f"dropped − kept, {name}")
+    figure = new_figure(PAGE_IN, 5.0 if both else 3.9)
+    axes = list(
+        figure.subplots(3 if both else 2, 1, sharex=True, height_ratios=(1.5, 1, 1) if both else (1.5, 1))
+    )
     for variant in variants:
-        last.plot(
+        line = VARIANT_LINES[variant]
+        axes[0].plot(z.index, z[variant, "fom"], color=COLOURS["fom"], linewidth=2.4, linestyle=line)
+        axes[0].plot(z.index, z[variant, "rom"], color=COLOURS["rom"], linewidth=0.9, linestyle=line)
+        axes[-1].plot(
             z.index,
             1e3 * (z[variant, "rom"] - z[variant, "fom"]),
-            color=VARIANT_COLOURS[variant],
-            linewidth=0.8,
-            linestyle=(0, (1, 1)),
-            label=f"reduced − full, {_short(variant)}",
+            color=COLOURS["rom"],
+            linewidth=0.9,
+            linestyle=line,
         )
-    last.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=4, borderaxespad=0.0, columnspacing=1.0)
-    last.set(xlabel="time [s]", ylabel="difference in z [mm]", xlim=(start_s, float(z.index[-1])), title="")
+    axes[0].set(ylabel="tip height z [m]", title="response")
+    axes[-1].set(ylabel="difference in z [mm]", xlabel="time [s]", title="reduced minus full order")
+    if both:
+        for model, width in (("fom", 2.4), ("rom", 0.9)):
+            difference_m = z["as_printed", model] - z["hamiltonian", model]
+            axes[1].plot(z.index, 1e3 * difference_m, color=COLOURS[model], linewidth=width)
+        axes[1].set(ylabel="difference in z [mm]", title="term dropped minus term kept")
+    axes[0].set_xlim(start_s, float(z.index[-1]))
+    handles = [
+        Line2D([], [], color=COLOURS["fom"], linewidth=2.4, label="full order"),
+        Line2D([], [], color=COLOURS["rom"], linewidth=0.9, label="reduced order"),
+    ]
+    handles += [Line2D([], [], color=GREY, linestyle=VARIANT_LINES[v], label=VARIANTS[v]) for v in variants]
+    figure.legend(handles=handles, loc="outside upper center", ncols=4)
     letter(axes)
     return figure
-
-
-def _short(variant: str) -> str:
-    return {"hamiltonian": "term kept", "as_printed": "term dropped"}[variant]

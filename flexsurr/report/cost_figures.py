@@ -29,9 +29,9 @@ RESPONSES = ("free", "forced")
 def cost_accuracy(cost: pd.DataFrame) -> Figure:
     """Wall time of one response against its tip error: every model × implementation × integrator.
 
-    `cost`: the columns of cost.csv. One row of panels for each response, one column for each variant. Labelled:
-    the Pareto front and what ran in SciPy's Radau. A setup of which a simulation diverged is hollow; one of
-    which all did stands on the upper edge.
+    `cost`: the columns of cost.csv. One row of panels for each response, one column for each
+    variant. Labelled: the Pareto front, and the baselines and torch with SciPy's Radau. A setup of which
+    a simulation diverged is hollow; one of which all did stands on the upper edge.
     """
     responses = [response for response in RESPONSES if response in set(cost["response"])]
     variants = [variant for variant in VARIANTS if variant in set(cost["variant"])]

@@ -24,7 +24,7 @@ BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
 BLUE, VERMILION, PURPLE, GREY = "#0072B2", "#D55E00", "#CC79A7", "#7F7F7F"
 COLOURS: dict[str, str] = {
     "reference": BLACK,
-    "exact": BLACK,
+    "exact": "#A8A8A8",
     "rom": BLACK,
     "fom": ORANGE,
     "mlp": VERMILION,

@@ -7,16 +7,10 @@ from pathlib import Path
 
 import pandas as pd
 
-STATIC_TIP = ("load_N", "x_exact_m", "z_exact_m", "x_fom_m", "z_fom_m", "x_rom_m", "z_rom_m")
-NATURAL_FREQUENCIES = (
-    "structure",
-    "mode",
-    "fom_rad_s",
-    "rom_rad_s",
-    "published_fom_rad_s",
-    "published_rom_rad_s",
-)
-TRAINING = (
+from flexsurr.evaluation.ratios import COST_COLUMNS
+from flexsurr.evaluation.statics import FREQUENCY_COLUMNS, STATIC_COLUMNS
+
+TRAINING_COLUMNS = (
     "study",
     "variant",
     "run_id",
@@ -29,47 +23,27 @@ TRAINING = (
     "train_nmse",
     "validation_nmse",
 )
-COST = (
-    "study",
-    "variant",
-    "response",
-    "model",
-    "implementation",
-    "integrator",
-    "simulations",
-    "wall_s_mean",
-    "wall_s_std",
-    "relative_to_described_percent",
-    "relative_to_described_std_percent",
-    "relative_to_numpy_percent",
-    "relative_to_compiled_percent",
-    "paper_percent",
-    "paper_std_percent",
-    "tip_error_percent",
-    "energy_drift_percent",
-    "diverged",
-)
 
 
 def static_tip(statics: pd.DataFrame) -> pd.DataFrame:
     """static_tip.csv: tip position [m] against dead tip load [N], ascending."""
-    return _columns(statics, STATIC_TIP).sort_values("load_N", ignore_index=True)
+    return _columns(statics, STATIC_COLUMNS).sort_values("load_N", ignore_index=True)
 
 
 def natural_frequencies(frequencies: pd.DataFrame) -> pd.DataFrame:
     """natural_frequencies.csv: full order, reduced order, and what is published [rad/s]."""
-    return _columns(frequencies, NATURAL_FREQUENCIES)
+    return _columns(frequencies, FREQUENCY_COLUMNS)
 
 
 def training(metrics: pd.DataFrame) -> pd.DataFrame:
     """training.csv: every run, failed ones with empty losses; best validation first in each variant."""
-    frame = _columns(metrics, TRAINING)
+    frame = _columns(metrics, TRAINING_COLUMNS)
     return frame.sort_values(["study", "variant", "validation_nmse", "run_id"], ignore_index=True)
 
 
 def cost(costs: pd.DataFrame) -> pd.DataFrame:
     """cost.csv: every model × implementation × integrator, by study, variant and response."""
-    return _columns(costs, COST)
+    return _columns(costs, COST_COLUMNS)
 
 
 def save_table(frame: pd.DataFrame, path: Path) -> None:
