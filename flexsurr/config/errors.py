@@ -27,7 +27,12 @@ def describe(
 
     `origin` tells for the location of a value the file it came from and its key in that file.
     """
-    return [_line(details, record, origin) for details in error.errors(include_url=False)]
+    return [
+        _line(details, record, origin)
+        for details in error.errors(include_url=False)
+        # A list whose only values are wrong also counts as too short.
+        if not (details["type"] == "too_short" and details["input"])
+    ]
 
 
 def nearest(word: str, known: Sequence[str]) -> str:

@@ -95,10 +95,10 @@ class Plan:
         """Number of shards of each dataset of one study."""
         return self.studies[study].study.dataset.shards
 
-    def simulate(self, study: str, variant: str, shard: int) -> Job:
-        """One shard: trajectories `first` to `first + count − 1`."""
+    def simulate(self, study: str, variant: str, shard: int | str) -> Job:
+        """One shard, by its number: trajectories `first` to `first + count − 1`."""
         dataset = self.studies[study].study.dataset
-        first = shard * dataset.trajectories_per_shard
+        first = int(shard) * dataset.trajectories_per_shard
         return {
             **self._dataset(study, variant),
             "configuration": self.dataset_hash(study, variant),

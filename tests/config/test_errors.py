@@ -59,7 +59,7 @@ BAD_VALUES = [
     (STRUCTURE, "elements", 10.5, ["elements", "10.5", "integer"]),
     (STRUCTURE, "joints", [], ["joints", "at least one"]),
     (STRUCTURE, "joints", ["in_plain"], ["joints[0]", "'in_plain'", "did you mean 'in_plane'", "torsion"]),
-    (STRUCTURE, "joints", ["torsion"], ["torsional_stiffness_N_m2: needed"]),
+    (STRUCTURE, "bending_stiffness_out_of_plane_N_m2", None, ["bending_stiffness_out_of_plane_N_m2: needed"]),
     (STUDY, "reduction.modes", 1000, ["reduction.modes", "1000", "allowed: 1 to"]),
     (STUDY, "reduction.modes", 0, ["reduction.modes", "0", "greater than or equal to 1"]),
     (STUDY, "structure", "config/structures/absent.yaml", ["structure", "absent.yaml", "no file"]),

@@ -5,7 +5,7 @@ wildcard_constraints:
     study="[A-Za-z0-9_]+",
     variant="hamiltonian|as_printed",
     response="free|forced",
-    shard=r"\d{4,}",
+    shard=r"\d+",
 
 
 rule simulate_shard:

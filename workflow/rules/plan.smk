@@ -15,14 +15,17 @@ from flexsurr.workflow.plan import Plan
 for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS"):
     os.environ[variable] = "1"
 
+# In the order in which they are laid on top of one another: Snakemake lists its own `configfile:` last.
+*on_top, base = workflow.configfiles
+files = [os.path.relpath(path, workflow.basedir) for path in (base, *on_top)]
+
 try:
-    plan = Plan(load(Path(workflow.basedir), [str(path) for path in workflow.configfiles], config))
+    plan = Plan(load(Path(workflow.basedir), files, config))
 except ConfigurationError as error:
     raise WorkflowError(str(error)) from None
 
 RESULTS = plan.settings.results
 STUDIES = list(plan.studies)
-PYTHON = "python -m flexsurr.cli"
 
 
 def job(rule, *keys):
