@@ -1,0 +1,66 @@
+# Each target does all of its own set-up. Python 3.11 or newer is needed, and nothing else.
+
+PYTHON ?= python3
+CORES ?= all
+PORT ?= 5000
+SNAKEMAKE_OPTIONS ?=
+
+VENV := .venv
+INSTALLED := $(VENV)/.installed
+export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
+export MLFLOW_DISABLE_TELEMETRY := true
+
+.PHONY: help reproduce test check ui benchmark browser clean
+
+help:
+	@echo "make reproduce    the whole default study, results/report.html   (CORES=2)"
+	@echo "make test         every check and test"
+	@echo "make ui           the page on which runs are compared, on this machine only   (PORT=5000)"
+	@echo "make benchmark    speed, as ratios"
+	@echo "make clean        remove all results; the environment stays"
+
+$(INSTALLED): environment.txt pyproject.toml
+	$(PYTHON) -c 'import sys; sys.exit(0 if sys.version_info >= (3, 11) else "Python 3.11 or newer is needed")'
+	test -x $(VENV)/bin/python || $(PYTHON) -m venv $(VENV)
+	$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check -r environment.txt
+	$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
+	touch $@
+
+reproduce: $(INSTALLED)
+	snakemake --cores $(CORES) $(SNAKEMAKE_OPTIONS)
+	snakemake --cores $(CORES) $(SNAKEMAKE_OPTIONS) --report results/report.html
+
+check: $(INSTALLED)
+	ruff check .
+	ruff format --check .
+	snakefmt --check Snakefile workflow
+	mypy
+	lint-imports
+
+# The quick tests first; those that run the workflow and look at its pages last.
+test: check browser
+	python -m pytest --ignore=tests/workflow tests
+	python -m pytest tests/workflow
+
+ui: $(INSTALLED)
+	@test -f results/mlflow/mlflow.db || { echo "no runs yet: make reproduce first"; exit 1; }
+	mlflow ui --backend-store-uri sqlite:///$(CURDIR)/results/mlflow/mlflow.db --host 127.0.0.1 --port $(PORT)
+
+benchmark: $(INSTALLED)
+	OMP_NUM_THREADS=1 python -m benchmarks
+
+# Tests look at the pages in a real browser. Debian's is fetched where there is none and we may.
+browser:
+	@browser=$$(command -v chromium || command -v chromium-browser || command -v google-chrome); \
+	driver=$$(command -v chromedriver); \
+	if test -n "$$browser" -a -n "$$driver"; then exit 0; fi; \
+	if test "$$(id -u)" = 0 && command -v apt-get > /dev/null; then \
+		apt-get update -q && apt-get install -q -y --no-install-recommends chromium chromium-driver; \
+	else \
+		echo "tests need chromium and chromedriver on the PATH; install them, or run make browser as root"; \
+		exit 1; \
+	fi
+
+clean:
+	find results -mindepth 1 -maxdepth 1 ! -name README.md -exec rm -rf {} +
+	rm -rf .snakemake
