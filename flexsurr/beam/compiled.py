@@ -9,7 +9,7 @@ import numpy as np
 from flexsurr.beam.chain import chain, rotary_inertia
 from flexsurr.beam.dynamics import BeamModel
 from flexsurr.beam.planar import is_planar, plane
-from flexsurr.beam.planar_sweep import PlanarChain, PlanarMode, planar_work_size
+from flexsurr.beam.planar_sweep import PlanarChain, PlanarMode, padded_length, planar_work_size
 from flexsurr.beam.projection import Projection
 from flexsurr.beam.spatial_sweep import SpatialChain, spatial_work_size
 from flexsurr.simulation.rhs import Array, evaluate
@@ -46,11 +46,11 @@ class CompiledBeam(BeamModel):
 def planar_mode_kernel(projection: Projection, gyroscopic: bool) -> PlanarMode:
     """The kernel of a single coordinate of a chain in a plane."""
     frame = plane(projection)
-    slopes = own(frame.slopes[:, 0])
+    slopes = padded(frame.slopes[:, 0])
     return PlanarMode(
         slopes=slopes,
         arms=frame.element_length * slopes,
-        weights=own(frame.weights * slopes),
+        weights=own(frame.weights / frame.element_length),
         mass=frame.element_mass,
         stiffness=float(projection.stiffness[0, 0]),
         damping=float(projection.damping[0, 0]),
@@ -63,7 +63,7 @@ def planar_kernel(projection: Projection, gyroscopic: bool) -> PlanarChain:
     """The kernel of any coordinates of a chain in a plane."""
     frame = plane(projection)
     return PlanarChain(
-        slopes=own(frame.slopes.T),
+        slopes=padded(frame.slopes.T),
         element_length=frame.element_length,
         weights=own(frame.weights),
         mass=frame.element_mass,
@@ -102,6 +102,12 @@ def all_joints(projection: Projection) -> Array:
     modes = np.zeros((projection.coordinates, 4 * beam.elements))
     modes[:, beam.rows] = projection.modes.T
     return modes
+
+
+def padded(rows: Array) -> Array:
+    """`rows` (..., N) with zeros up to the length P that planar kernels sweep."""
+    n = rows.shape[-1]
+    return np.pad(own(rows), [(0, 0)] * (rows.ndim - 1) + [(0, padded_length(n) - n)])
 
 
 def own(array: Array) -> Array:

@@ -4,7 +4,7 @@ from typing import Any, NamedTuple
 
 from numba import njit
 
-from flexsurr.beam.planar_sweep import planar_angles
+from flexsurr.beam.planar_sweep import padded_length, planar_angles
 from flexsurr.beam.spatial_sweep import AXES, add_dead_forces, sweep_axes
 from flexsurr.beam.trigonometry import sine_cosine
 from flexsurr.simulation.rhs import FLOATING_POINT, Array, implements_rhs, rhs
@@ -14,8 +14,8 @@ class PlanarLoaded(NamedTuple):
     """A model of a chain in a plane under a dead load of fixed shape."""
 
     model: Any  # kernel of the model without the load
-    slopes: Array  # (r, N) absolute angles for each η
-    arms: Array  # (2, N) moment arms of the load's shape [N m]
+    slopes: Array  # (r, P) absolute angles for each η, padded with zeros
+    arms: Array  # (2, P) moment arms of the load's shape [N m], likewise
     start: float  # [s]
     end: float  # [s]
     frequency: float  # [rad/s]
@@ -40,7 +40,7 @@ class SpatialLoaded(NamedTuple):
 
 def planar_load_work_size(elements: int) -> int:
     """Scratch of `planar_loaded_rhs` beyond the model's."""
-    return 2 * elements
+    return 2 * padded_length(elements)
 
 
 def spatial_load_work_size(elements: int) -> int:

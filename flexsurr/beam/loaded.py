@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from flexsurr.beam.chain import chain
-from flexsurr.beam.compiled import all_joints, own
+from flexsurr.beam.compiled import all_joints, own, padded
 from flexsurr.beam.described import jacobians
 from flexsurr.beam.kinematics import configuration, generalised_forces, tip_position
 from flexsurr.beam.load_sweeps import (
@@ -142,7 +142,7 @@ class CompiledLoad(LoadedModel):
         if is_planar(self.projection.structure):
             frame = plane(self.projection)
             arms = frame.moment_arms(*self.forces)
-            return PlanarLoaded(self.model.kernel, own(frame.slopes.T), own(arms), *when)
+            return PlanarLoaded(self.model.kernel, padded(frame.slopes.T), padded(arms), *when)
         beam = chain(self.projection.structure)
         modes, (on_centres, on_tip) = all_joints(self.projection), self.forces
         return SpatialLoaded(

@@ -1,4 +1,8 @@
-"""Compiled equations of a chain in a plane: its absolute angles, one sweep out, one sweep back."""
+"""Compiled equations of a chain in a plane: its absolute angles, one sweep out, one sweep back.
+
+Rows over the elements are padded with zeros to P, a multiple of `LANES`, so that the sines and cosines
+fill whole vector registers; N is the true number of elements.
+"""
 
 from typing import NamedTuple
 
@@ -8,13 +12,15 @@ from flexsurr.beam.linear_solve import solve_positive_definite
 from flexsurr.beam.trigonometry import sine_cosine
 from flexsurr.simulation.rhs import FLOATING_POINT, Array, implements_rhs
 
+LANES = 4  # doubles in a 256-bit register
+
 
 class PlanarMode(NamedTuple):
     """One mode of a chain in a plane: states (η, p)."""
 
-    slopes: Array  # (N,) absolute angles for η = 1
-    arms: Array  # (N,) l times the slopes [m]
-    weights: Array  # (2, N) moment arms of gravity times the slopes [N m]
+    slopes: Array  # (P,) absolute angles for η = 1
+    arms: Array  # (P,) l times the slopes [m]
+    weights: Array  # (2, N) moment arms of gravity over the element's length [N]
     mass: float  # of each element [kg]
     stiffness: float
     damping: float
@@ -25,7 +31,7 @@ class PlanarMode(NamedTuple):
 class PlanarChain(NamedTuple):
     """Any coordinates of a chain in a plane: states (η_1…η_r, p_1…p_r)."""
 
-    slopes: Array  # (r, N) absolute angles for each η
+    slopes: Array  # (r, P) absolute angles for each η
     element_length: float  # [m]
     weights: Array  # (2, N) moment arms of gravity [N m]
     mass: float  # of each element [kg]
@@ -38,47 +44,60 @@ class PlanarChain(NamedTuple):
 def planar_mode_rhs(kernel, t, x, dx, work):
     """Eq. 10 for one mode: the gyroscopic term is η̇² Σ m J·J′ with J′ the tangent's own tangent."""
     eta = x[0]
-    n = kernel.slopes.shape[0]
-    for i in range(n):
-        work[i], work[n + i] = sine_cosine(kernel.slopes[i] * eta)
-    inertia = slope = weight = 0.0
+    slopes, arms = kernel.slopes, kernel.arms
+    padded = slopes.shape[0]
+    n = kernel.weights.shape[1]
+    steps_along, steps_normal = work[:padded], work[padded : 2 * padded]
+    for i in range(padded):
+        sine, cosine = sine_cosine(slopes[i] * eta)
+        steps_along[i], steps_normal[i] = arms[i] * sine, arms[i] * cosine
+    # J is (−along, normal) and J′ is (−normal_2, −along_2). Two sums each, for they are chains of additions.
+    weight = 0.0
+    inertia = inertia_2 = slope = slope_2 = 0.0
     along = normal = along_2 = normal_2 = 0.0
     for i in range(n):
-        sine, cosine = work[i], work[n + i]
-        step_along, step_normal = -kernel.arms[i] * sine, kernel.arms[i] * cosine
-        step_along_2, step_normal_2 = -kernel.slopes[i] * step_normal, kernel.slopes[i] * step_along
-        x1, z1 = along + 0.5 * step_along, normal + 0.5 * step_normal
-        x2, z2 = along_2 + 0.5 * step_along_2, normal_2 + 0.5 * step_normal_2
-        inertia += x1 * x1 + z1 * z1
-        slope += x1 * x2 + z1 * z2
+        step_along, step_normal = steps_along[i], steps_normal[i]
+        step_along_2, step_normal_2 = slopes[i] * step_along, slopes[i] * step_normal
+        mid_along, mid_normal = along + 0.5 * step_along, normal + 0.5 * step_normal
+        inertia += mid_along * mid_along
+        inertia_2 += mid_normal * mid_normal
+        slope += mid_along * (normal_2 + 0.5 * step_normal_2)
+        slope_2 += mid_normal * (along_2 + 0.5 * step_along_2)
         along += step_along
         normal += step_normal
         along_2 += step_along_2
         normal_2 += step_normal_2
     if kernel.heavy:
         for i in range(n):
-            weight += kernel.weights[1, i] * work[n + i] - kernel.weights[0, i] * work[i]
-    rate = x[1] / (kernel.mass * inertia)
+            weight += kernel.weights[1, i] * steps_normal[i] - kernel.weights[0, i] * steps_along[i]
+    rate = x[1] / (kernel.mass * (inertia + inertia_2))
     force = weight - kernel.stiffness * eta - kernel.damping * rate
     if kernel.gyroscopic:
-        force += kernel.mass * slope * rate * rate
+        force += kernel.mass * (slope - slope_2) * rate * rate
     dx[0] = rate
     dx[1] = force
 
 
+def padded_length(elements: int) -> int:
+    """P, the number of elements rounded up to whole registers."""
+    return -(-elements // LANES) * LANES
+
+
 def planar_work_size(elements: int, coordinates: int) -> int:
     """Scratch of `planar_chain_rhs`."""
-    return 8 * elements + 2 * coordinates * elements + coordinates**2
+    return 6 * padded_length(elements) + 2 * coordinates * elements + coordinates**2
 
 
 @implements_rhs(PlanarChain)
 def planar_chain_rhs(kernel, t, x, dx, work):
     """Eqs. 6, 7 and 10 in a plane."""
-    r, n = kernel.slopes.shape
-    sine, cosine, turning = work[:n], work[n : 2 * n], work[2 * n : 3 * n]
-    spin, along, normal = work[3 * n : 4 * n], work[4 * n : 5 * n], work[5 * n : 6 * n]
-    jacobian = work[6 * n : 6 * n + 2 * r * n]
-    mass = work[6 * n + 2 * r * n :]
+    r, padded = kernel.slopes.shape
+    n = kernel.weights.shape[1]
+    sine, cosine, turning = work[:padded], work[padded : 2 * padded], work[2 * padded : 2 * padded + n]
+    scratch = work[3 * padded :]
+    spin, along, normal = scratch[:n], scratch[n : 2 * n], scratch[2 * n : 3 * n]
+    jacobian = scratch[3 * n : 3 * n + 2 * r * n]
+    mass = scratch[3 * n + 2 * r * n :]
     planar_angles(kernel.slopes, x, sine, cosine)
 
     length = kernel.element_length
@@ -126,10 +145,13 @@ def planar_chain_rhs(kernel, t, x, dx, work):
 
 @njit(fastmath=FLOATING_POINT, error_model="numpy", cache=True)
 def planar_angles(slopes, x, sine, cosine):
-    """Sines and cosines (N,) of the absolute angles at η = x[:r], slopes (r, N)."""
-    r, n = slopes.shape
-    for i in range(n):
-        angle = 0.0
-        for k in range(r):
-            angle += slopes[k, i] * x[k]
-        sine[i], cosine[i] = sine_cosine(angle)
+    """Sines and cosines (P,) of the absolute angles at η = x[:r], slopes (r, P)."""
+    r, padded = slopes.shape
+    for i in range(padded):
+        sine[i] = 0.0
+    for k in range(r):
+        row, eta = slopes[k], x[k]
+        for i in range(padded):
+            sine[i] += row[i] * eta
+    for i in range(padded):
+        sine[i], cosine[i] = sine_cosine(sine[i])
