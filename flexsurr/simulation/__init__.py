@@ -1,0 +1,16 @@
+"""The right-hand side, integrators, trajectories."""
+
+from flexsurr.simulation.rhs import Array, CompiledModel, Model, evaluate, implements_rhs, rhs
+from flexsurr.simulation.simulate import simulate
+from flexsurr.simulation.trajectory import Trajectory
+
+__all__ = [
+    "Array",
+    "CompiledModel",
+    "Model",
+    "Trajectory",
+    "evaluate",
+    "implements_rhs",
+    "rhs",
+    "simulate",
+]

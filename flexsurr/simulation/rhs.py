@@ -28,10 +28,14 @@ class Model(Protocol):
     """A right-hand side in Python, with the names and units of its states."""
 
     @property
-    def state_names(self) -> tuple[str, ...]: ...
+    def state_names(self) -> tuple[str, ...]:
+        """One name for each state; their number is d."""
+        ...
 
     @property
-    def state_units(self) -> tuple[str, ...]: ...
+    def state_units(self) -> tuple[str, ...]:
+        """One unit for each state."""
+        ...
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
@@ -48,7 +52,9 @@ class CompiledModel(Model, Protocol):
     """A model that compiled integrators can step: a kernel and the size of its workspace."""
 
     @property
-    def kernel(self) -> NamedTuple: ...
+    def kernel(self) -> NamedTuple:
+        """The equations' constants; its class says which equations they belong to."""
+        ...
 
     @property
     def work_size(self) -> int:
@@ -65,7 +71,11 @@ def rhs(kernel: Any, t: float, x: Array, dx: Array, work: Array) -> None:
 
 
 def implements_rhs(kernel_class: type) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Register the decorated function (kernel, t, x, dx, work) -> None as `rhs` of `kernel_class`."""
+    """Register the decorated function (kernel, t, x, dx, work) -> None as `rhs` of `kernel_class`.
+
+    Its arguments must carry these names. Write loops over states, not slices: assigning a slice costs
+    seconds of compilation.
+    """
 
     def register(equations: Callable[..., None]) -> Callable[..., None]:
         @overload(rhs, jit_options={"fastmath": FLOATING_POINT, "error_model": "numpy"})

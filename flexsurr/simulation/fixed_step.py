@@ -1,0 +1,87 @@
+"""Integration with a fixed step, for any one-step method.
+
+A method is a NamedTuple of its workspaces; its class chooses the formula, as a kernel's class chooses
+the equations.
+"""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import njit, types
+from numba.extending import overload
+
+from flexsurr.simulation.dimension import ORDERED, states
+from flexsurr.simulation.outcome import COMPLETED, NOT_CONVERGED, NOT_FINITE
+from flexsurr.simulation.rhs import Array
+
+# Sample times such as k·0.01 differ by an interval plus rounding; that must not cost a further step.
+_ROUNDING = 1e-9
+
+
+def advance(
+    method: NamedTuple, kernel: Any, t: float, h: float, x: Array, scratch: Array, work: Array
+) -> int:
+    """Advance x (d,) from t by one step h [s]; the number of evaluations, or −1 if it failed.
+
+    Callable from compiled code only.
+    """
+    raise TypeError(f"no method is registered for {type(method).__name__}; call advance from compiled code")
+
+
+def implements_advance(
+    method_class: type, fastmath: bool | set[str] = ORDERED
+) -> Callable[[Callable[..., int]], Callable[..., int]]:
+    """Register the decorated function (method, kernel, t, h, x, scratch, work) -> int for `method_class`."""
+
+    def register(formula: Callable[..., int]) -> Callable[..., int]:
+        @overload(advance, inline="always")
+        def resolve(method, kernel, t, h, x, scratch, work):
+            if isinstance(method, types.BaseNamedTuple) and method.instance_class is method_class:
+                return formula
+            return None
+
+        return formula
+
+    return register
+
+
+@njit(error_model="numpy")
+def all_finite(x):
+    """Whether every value of x (d,) is finite."""
+    total = 0.0
+    for i in range(x.size):
+        total += 0.0 * x[i]  # NaN as soon as one value is infinite or NaN
+    return total == 0.0
+
+
+@njit(cache=True, error_model="numpy")
+def run_fixed_step(method, kernel, t, x, longest_step, work):
+    """Fill x (m, d) from its first row at times t (m,), in equal steps of `longest_step` [s] or less.
+
+    Returns the rows filled, the time of the last finite state, evaluations, steps, and a status.
+    """
+    # Allocated here and with a constant width, rows are known not to overlap: twice as fast.
+    d = states(method.constant, x[0])
+    scratch = np.empty((method.rows, d))
+    state = np.empty(d)
+    for i in range(d):
+        state[i] = x[0, i]
+    evaluations = 0
+    steps = 0
+    for row in range(1, t.size):
+        begin = t[row - 1]
+        interval = t[row] - begin
+        count = max(1, int(np.ceil(interval / longest_step * (1.0 - _ROUNDING))))
+        h = interval / count
+        for n in range(count):
+            calls = advance(method, kernel, begin + n * h, h, state, scratch, work)
+            if calls < 0:
+                return row, begin + n * h, evaluations, steps, NOT_CONVERGED
+            evaluations += calls
+            if not all_finite(state):
+                return row, begin + n * h, evaluations, steps, NOT_FINITE
+            steps += 1
+        for i in range(d):
+            x[row, i] = state[i]
+    return t.size, t[-1], evaluations, steps, COMPLETED

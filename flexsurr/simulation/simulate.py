@@ -1,0 +1,89 @@
+"""The one way to simulate a model."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from flexsurr.config.study import Integrator
+from flexsurr.simulation.compiled_methods import COMPILED, run_compiled
+from flexsurr.simulation.outcome import Outcome
+from flexsurr.simulation.rhs import Array, Model
+from flexsurr.simulation.scipy_methods import run_scipy
+from flexsurr.simulation.trajectory import Trajectory
+
+Run = Callable[[Array, Array], Outcome]
+"""Fills x (m, d) from its first row at times t (m,), over which f is smooth."""
+
+# Pieces of time keep this many floating-point spacings off a breakpoint, so that no rounding of a
+# stage's time evaluates f on the breakpoint's other side.
+_SPACINGS = 4
+
+
+def simulate(model: Model, t: Array, x0: Array, integrator: Integrator) -> Trajectory:
+    """Integrate ẋ = f(t, x) from `x0` (d,) at t[0] and sample it at the increasing times `t` (m,) [s].
+
+    An integrator with a fixed step divides each interval between samples into equal steps of at most
+    `step_s`; one that adapts its step interpolates the samples. Each starts anew at the model's
+    breakpoints, whether f there belongs to the time before or after. Without tolerances in `integrator`,
+    SciPy's defaults hold (rtol 1e-3, atol 1e-6).
+
+    A simulation that fails ends its trajectory: see `Trajectory.completed` and `Trajectory.reason`.
+
+    Raises ValueError if `t` or `x0` has the wrong shape, is not finite or `t` does not increase, and
+    TypeError if a compiled method is asked to step a model without a kernel.
+    """
+    t = np.ascontiguousarray(t, dtype=np.float64)
+    x0 = np.asarray(x0, dtype=np.float64)
+    _check(model, t, x0)
+    run = (run_compiled if integrator.method in COMPILED else run_scipy)(model, integrator)
+    x = np.empty((t.size, x0.size))
+    x[0] = x0
+    breaks = [b for b in model.breakpoints if t[0] < b < t[-1]]
+    outcome = _run_pieces(run, t, x, breaks) if breaks else run(t, x)
+    return Trajectory(
+        t=t[: outcome.rows],
+        x=x[: outcome.rows],
+        state_names=model.state_names,
+        state_units=model.state_units,
+        completed=not outcome.reason,
+        reason=outcome.reason,
+        end_time_s=outcome.end_time_s,
+        evaluations=outcome.evaluations,
+        steps=outcome.steps,
+    )
+
+
+def _check(model: Model, t: Array, x0: Array) -> None:
+    if t.ndim != 1 or t.size == 0 or not np.isfinite(t).all() or (t[1:] <= t[:-1]).any():
+        raise ValueError("t must be a vector of at least one finite, increasing time")
+    d = len(model.state_names)
+    if x0.shape != (d,) or not np.isfinite(x0).all():
+        raise ValueError(f"x0 must hold {d} finite values, one for each of {', '.join(model.state_names)}")
+
+
+def _run_pieces(run: Run, t: Array, x: Array, breaks: list[float]) -> Outcome:
+    """As `run`, over times at which f jumps within."""
+    margin = _SPACINGS * np.spacing(max(abs(t[0]), abs(t[-1])))
+    begin, state = t[0], x[0]
+    filled, evaluations, steps = 1, 0, 0
+    for jump in [*breaks, np.inf]:
+        end = min(jump - margin, t[-1])
+        if end <= begin:
+            continue
+        inside = int(np.searchsorted(t, end))
+        nodes = np.concatenate(([begin], t[filled:inside], [end]))
+        rows = np.empty((nodes.size, state.size))
+        rows[0] = state
+        piece = run(nodes, rows)
+        evaluations += piece.evaluations
+        steps += piece.steps
+        reached = min(piece.rows, nodes.size - 1)
+        x[filled : filled + reached - 1] = rows[1:reached]
+        filled += reached - 1
+        if piece.reason:
+            return Outcome(filled, piece.end_time_s, evaluations, steps, piece.reason)
+        begin, state = jump + margin, rows[-1]
+        beyond = int(np.searchsorted(t, begin, side="right"))
+        x[filled:beyond] = state
+        filled = beyond
+    return Outcome(filled, float(t[-1]), evaluations, steps, "")

@@ -1,0 +1,147 @@
+"""Write `unrolled.py`: the explicit methods with their stages unrolled.
+
+A loop over a tableau costs three times as much as its stages written out, because zero coefficients
+are multiplied and the compiler cannot see across stages. Numba keeps machine code on disk only for
+functions that stand in a file, so the file is written once, by
+
+    python -m flexsurr.simulation.unroll
+
+and kept with the sources; a test compares it with what this module writes.
+"""
+
+from pathlib import Path
+
+from flexsurr.simulation.tableaus import DOP853, RK4, EmbeddedTableau, ExplicitTableau, Row
+
+DESTINATION = Path(__file__).with_name("unrolled.py")
+
+_HEAD = '''"""Explicit Runge–Kutta methods, stages unrolled. Written by unroll.py: do not edit.
+
+All of them: kernel, time t [s], step h [s], state x (d,), stages k (stages, d) whose first row already
+holds f(t, x), scratch y (d,), the kernel's workspace, and the number d as a constant.
+"""
+
+# ruff: noqa: E501 (one sum of a tableau's row is one line)
+# fmt: off
+from numba import njit
+
+from flexsurr.simulation.dimension import ORDERED, states
+from flexsurr.simulation.rhs import rhs
+'''
+
+_DECORATOR = '@njit(error_model="numpy", fastmath=ORDERED)'
+
+
+def _sum(row: Row, scale: str = "") -> str:
+    """Σ_j row_j k_j[i] as source, each term preceded by its sign; `scale` multiplies the coefficients.
+
+    The step multiplies coefficients, not stages, since those products are ready before the newest stage.
+    """
+    opening, closing = (f"({scale} * ", ")") if scale else ("", "")
+    return "".join(
+        f" {'-' if value < 0 else '+'} {opening}{abs(value)!r}{closing} * k{j}[i]" for j, value in row.items()
+    )
+
+
+def _function(name: str, arguments: str, docstring: str, body: list[str]) -> str:
+    lines = [
+        _DECORATOR,
+        f"def {name}({arguments}):",
+        f'    """{docstring}"""',
+        *(f"    {line}" for line in body),
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _names(rows: range | list[int]) -> list[str]:
+    return ["d = states(constant, x)", *(f"k{j} = k[{j}]" for j in rows)]
+
+
+def _stages(tableau: ExplicitTableau, first: int, skip: int) -> list[str]:
+    """Evaluate the stages of `tableau`, numbered from `first`, without its `skip` leading ones."""
+    lines = []
+    for number in range(skip, len(tableau.c)):
+        lines += [
+            "for i in range(d):",
+            f"    y[i] = x[i]{_sum(tableau.a[number], 'h')}",
+            f"rhs(kernel, t + {tableau.c[number]!r} * h, y, k{first + number}, work)",
+        ]
+    return lines
+
+
+def _step(name: str, tableau: ExplicitTableau) -> str:
+    body = [
+        *_names(range(len(tableau.c))),
+        *_stages(tableau, first=0, skip=1),
+        "for i in range(d):",
+        f"    x_new[i] = x[i]{_sum(tableau.b, 'h')}",
+    ]
+    return _function(
+        name,
+        "kernel, t, h, x, x_new, k, y, work, constant",
+        "Write the state at t + h into x_new, which may be x.",
+        body,
+    )
+
+
+def _error(name: str, tableau: EmbeddedTableau) -> str:
+    used = sorted({*tableau.error_3, *tableau.error_5})
+    body = [
+        *_names(used),
+        "square_3 = 0.0",
+        "square_5 = 0.0",
+        "for i in range(d):",
+        "    scale = 1.0 / (atol + rtol * max(abs(x[i]), abs(x_new[i])))",
+        f"    error_3 = scale * ({_sum(tableau.error_3)})",
+        f"    error_5 = scale * ({_sum(tableau.error_5)})",
+        "    square_3 += error_3 * error_3",
+        "    square_5 += error_5 * error_5",
+        "return square_3, square_5",
+    ]
+    return _function(
+        name,
+        "x, x_new, k, rtol, atol, constant",
+        "Sums of squares of the two error estimates over h, scaled.",
+        body,
+    )
+
+
+def _dense(name: str, tableau: EmbeddedTableau) -> str:
+    end = len(tableau.method.c)
+    evaluated = [end + 1 + n for n in range(len(tableau.further.c))]
+    used = sorted({0, end, *evaluated}.union(*tableau.further.a, *tableau.dense))
+    rows = [
+        "dense[0, i] = x_new[i] - x[i]",
+        "dense[1, i] = h * k0[i] - dense[0, i]",
+        f"dense[2, i] = 2.0 * dense[0, i] - h * (k{end}[i] + k0[i])",
+        *(f"dense[{3 + n}, i] = h * ({_sum(row)})" for n, row in enumerate(tableau.dense)),
+    ]
+    body = [
+        *_names(used),
+        *_stages(tableau.further, first=end + 1, skip=0),
+        "for i in range(d):",
+        *(f"    {row}" for row in rows),
+    ]
+    return _function(
+        name,
+        "kernel, t, h, x, x_new, dense, k, y, work, constant",
+        f"Write the dense output's coefficients (7, d); k[{end}] holds f at the end of the step.",
+        body,
+    )
+
+
+def source() -> str:
+    """The text of `unrolled.py`."""
+    return "\n\n".join(
+        [
+            _HEAD,
+            _step("rk4_step", RK4),
+            _step("dop853_step", DOP853.method),
+            _error("dop853_error", DOP853),
+            _dense("dop853_dense", DOP853),
+        ]
+    )
+
+
+if __name__ == "__main__":
+    DESTINATION.write_text(source(), encoding="utf-8")
