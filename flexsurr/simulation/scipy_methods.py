@@ -78,6 +78,8 @@ def _drive(solver: Any, t: Array, x: Array, progress: _Progress) -> str:
         message = solver.step()
         if solver.status == "failed":
             return message or "the solver failed"
+        if solver.t <= progress.time_s:  # LSODA would go on so for ever
+            return "the step size fell below the spacing of floating-point numbers"
         reached = int(np.searchsorted(t, solver.t, side="right"))
         new = slice(progress.rows, reached)
         if reached > progress.rows:

@@ -1,0 +1,90 @@
+"""Where numba keeps the machine code of the kernels between processes.
+
+An integrator's machine code holds the equations it steps, but numba looks only at the integrator's own
+file to see whether the code is stale: after an edit of the equations it would go on running the old ones.
+So the folder it uses is named by a digest of every source that may end up in machine code, and an edit
+means another folder. Kernels defined outside this package are not in the digest; who edits those deletes
+the folder, or sets NUMBA_CACHE_DIR to one of their own.
+
+Standard library only, and before numba is imported, since numba reads its settings on import.
+"""
+
+import hashlib
+import os
+import shutil
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+PACKAGE = Path(__file__).parent
+KERNEL_FLOORS = ("simulation", "beam", "surrogates", "aerodynamics", "flight")
+KEPT_UNUSED_DAYS = 14.0
+
+_VARIABLE = "NUMBA_CACHE_DIR"
+_PREFIX = "flexsurr-kernels-"
+
+
+def digest(package: Path = PACKAGE) -> str:
+    """Sixteen hex digits of the names and contents of the sources below the floors that hold kernels."""
+    sha = hashlib.sha256()
+    for floor in KERNEL_FLOORS:
+        for source in sorted((package / floor).rglob("*.py")):
+            sha.update(source.relative_to(package).as_posix().encode() + b"\0")
+            sha.update(source.read_bytes() + b"\0")
+    return sha.hexdigest()[:16]
+
+
+def activate(package: Path = PACKAGE) -> None:
+    """Tell numba the folder of these sources, unless the user has chosen one.
+
+    A folder that a parent process chose this way does not count: the sources may have changed since.
+    """
+    numba = sys.modules.get("numba")
+    chosen = os.environ.get(_VARIABLE) or (numba.config.CACHE_DIR if numba else "")
+    if chosen and not Path(chosen).name.startswith(_PREFIX):
+        return
+    folder = str(_folder(_PREFIX + digest(package), package))
+    os.environ[_VARIABLE] = folder
+    if numba:
+        numba.config.CACHE_DIR = folder
+
+
+def _folder(name: str, package: Path) -> Path:
+    """The folder `name` in the first place that can be written to, its time of last use set to now."""
+    for place in _places(package):
+        folder = place / name
+        try:
+            is_new = not folder.is_dir()
+            folder.mkdir(parents=True, exist_ok=True)
+            os.utime(folder)
+            tempfile.TemporaryFile(dir=folder).close()
+        except OSError:
+            continue
+        if is_new:
+            _prune(place)
+        return folder
+    return Path(tempfile.mkdtemp(prefix=name + "-"))
+
+
+def _places(package: Path) -> Iterator[Path]:
+    yield package / "__pycache__"
+    if "XDG_CACHE_HOME" in os.environ:
+        yield Path(os.environ["XDG_CACHE_HOME"]) / "flexsurr"
+    try:
+        yield Path.home() / ".cache" / "flexsurr"
+    except RuntimeError:  # a user without a home
+        return
+
+
+def _prune(place: Path) -> None:
+    """Remove the folders of other sources that no process has started with for some days."""
+    oldest = time.time() - KEPT_UNUSED_DAYS * 86400.0
+    for folder in place.glob(_PREFIX + "*"):
+        try:
+            stale = folder.stat().st_mtime < oldest
+        except OSError:  # another process was faster
+            continue
+        if stale:
+            shutil.rmtree(folder, ignore_errors=True)
