@@ -1,0 +1,145 @@
+"""Hamiltonian neural network, eq. 11: a network H(q, p), and Hamilton's equations of it."""
+
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+
+from flexsurr.simulation.rhs import Array, implements_rhs
+from flexsurr.surrogates.activations import slope, value
+from flexsurr.surrogates.layers import back, forward, offset
+from flexsurr.surrogates.network import Network
+from flexsurr.surrogates.surrogate import symplectic
+
+
+@dataclass(frozen=True, eq=False)
+class HNN(Network):
+    """q̇ = ∂H/∂p, ṗ = −∂H/∂q with H = Σ c σ(… σ(W₁ x + b₁) …), eq. 11.
+
+    The readout is the vector c; a constant would not move the field. For one hidden layer the field
+    needs σ′ only.
+    """
+
+    architecture: ClassVar[str] = "hnn"
+
+    @property
+    def readout_shapes(self) -> tuple[tuple[int, ...], ...]:
+        """The vector c."""
+        return ((self.hidden[-1],),)
+
+    def _hidden_layers(self, x: Array) -> tuple[Array, list[Array]]:
+        """Arguments of the last layer's σ, and the slopes σ′ of the layers before it."""
+        *layers, _ = self.arrays()
+        slopes: list[Array] = []
+        z = x @ layers[0] + layers[1]
+        for weights, biases in zip(layers[2::2], layers[3::2], strict=True):
+            slopes.append(self.sigma.slope(z))
+            z = self.sigma.value(z) @ weights + biases
+        return z, slopes
+
+    def scaled_energy(self, x: Array) -> Array:
+        """Ĥ of scaled states, (..., 2r) -> (...)."""
+        z, _ = self._hidden_layers(x)
+        return self.sigma.value(z) @ self.arrays()[-1]
+
+    def scaled_gradient(self, x: Array) -> Array:
+        """∇Ĥ of scaled states, (..., 2r) -> (..., 2r), by one sweep back through the layers."""
+        *layers, readout = self.arrays()
+        z, slopes = self._hidden_layers(x)
+        gradient = (self.sigma.slope(z) * readout) @ layers[-2].T
+        for weights, slopes_before in zip(layers[-4::-2], reversed(slopes), strict=True):
+            gradient = (gradient * slopes_before) @ weights.T
+        return gradient
+
+    def scaled_field(self, x: Array) -> Array:
+        """Hamilton's equations of Ĥ."""
+        return symplectic(self.scaled_gradient(x))
+
+    def energy(self, x: Array) -> Array:
+        """H(x) − H(0), (..., 2r) -> (...), in the product of the units of q and p per second."""
+        states = self.scaling.states(len(self.state_names))
+        difference = self.scaled_energy(x / states) - self.scaled_energy(np.zeros_like(states))
+        return self.scaling.energy * difference
+
+    def kernel(self) -> tuple[NamedTuple, int]:
+        """A single loop for one hidden layer over one pair (q, p), else layer by layer."""
+        states = self.scaling.states(len(self.state_names))
+        inner, *others, readout = self.arrays()
+        inner = inner / states[:, None]
+        readout = readout * self.scaling.energy
+        if self.widths == (2, self.hidden[0]):
+            return PhasePlaneHNN(
+                self.sigma.tag, inner[0].copy(), inner[1].copy(), others[0].copy(), readout
+            ), 0
+        parameters = np.concatenate([array.ravel() for array in (inner, *others, readout)])
+        return HNNKernel(self.sigma.tag, self.widths, parameters), self.widths[0] + 2 * sum(self.hidden)
+
+
+class PhasePlaneHNN(NamedTuple):
+    """One hidden layer over a single pair (q, p): weights of q and of p, biases, readout, each (n,)."""
+
+    activation: NamedTuple
+    w_q: Array
+    w_p: Array
+    bias: Array
+    readout: Array
+
+
+@implements_rhs(PhasePlaneHNN)
+def _phase_plane_hnn(kernel, t, x, dx, work):
+    activation, w_q, w_p, bias, readout = kernel
+    q, p = x[0], x[1]
+    dh_dq = 0.0
+    dh_dp = 0.0
+    for k in range(bias.size):
+        g = readout[k] * slope(activation, w_q[k] * q + w_p[k] * p + bias[k])
+        dh_dq += g * w_q[k]
+        dh_dp += g * w_p[k]
+    dx[0] = dh_dp
+    dx[1] = -dh_dq
+
+
+class HNNKernel(NamedTuple):
+    """Any number of states and hidden layers; widths and parameters as in `Network`."""
+
+    activation: NamedTuple
+    widths: tuple[int, ...]
+    parameters: Array
+
+
+@implements_rhs(HNNKernel)
+def _hnn(kernel, t, x, dx, work):
+    activation, widths, parameters = kernel
+    last = len(widths) - 1
+    # work: the inputs, then for each layer the arguments and the values of σ
+    for j in range(x.size):
+        work[j] = x[j]
+    values = offset(0)
+    weights = offset(0)
+    for layer in range(1, last + 1):
+        n = offset(widths[layer - 1])
+        m = offset(widths[layer])
+        z = values + n
+        forward(parameters, weights, n, m, work, values, z)
+        values = z + m
+        weights += n * m + m
+        if layer < last:
+            for k in range(m):
+                work[values + k] = value(activation, work[z + k])
+    m = offset(widths[last])
+    for k in range(m):
+        work[values + k] = parameters[weights + k]
+    # back: the derivatives of H by each layer's values, then by its arguments, in their places
+    for layer in range(last, 0, -1):
+        n = offset(widths[layer - 1])
+        m = offset(widths[layer])
+        z = values - m
+        for k in range(m):
+            work[z + k] = work[values + k] * slope(activation, work[z + k])
+        values = z - n
+        weights -= n * m + m
+        back(parameters, weights, n, m, work, z, values)
+    r = x.size // 2
+    for j in range(r):
+        dx[j] = work[r + j]
+        dx[r + j] = -work[j]

@@ -1,0 +1,100 @@
+"""Multilayer perceptron: ẋ as a network of x, with no structure (the paper's Fig. 5)."""
+
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+
+from flexsurr.simulation.rhs import Array, implements_rhs
+from flexsurr.surrogates.activations import value
+from flexsurr.surrogates.layers import forward, offset
+from flexsurr.surrogates.network import Network
+
+
+@dataclass(frozen=True, eq=False)
+class MLP(Network):
+    """ẋ = W₂ σ(W₁ x + b₁) + b₂, or the same with more hidden layers."""
+
+    architecture: ClassVar[str] = "mlp"
+
+    @property
+    def readout_shapes(self) -> tuple[tuple[int, ...], ...]:
+        """Weights and biases of the outputs."""
+        count = len(self.state_names)
+        return ((self.hidden[-1], count), (count,))
+
+    def scaled_field(self, x: Array) -> Array:
+        """The network."""
+        *layers, weights_out, biases_out = self.arrays()
+        for weights, biases in zip(layers[::2], layers[1::2], strict=True):
+            x = self.sigma.value(x @ weights + biases)
+        return x @ weights_out + biases_out
+
+    def kernel(self) -> tuple[NamedTuple, int]:
+        """A single loop for one hidden layer over one pair (q, p), else layer by layer."""
+        count = len(self.state_names)
+        inner, *others, weights_out, biases_out = self.arrays()
+        inner = inner / self.scaling.states(count)[:, None]
+        weights_out = weights_out * self.scaling.rates(count)
+        biases_out = biases_out * self.scaling.rates(count)
+        if self.widths == (2, self.hidden[0]):
+            vectors = inner[0], inner[1], others[0], weights_out[:, 0], weights_out[:, 1], biases_out
+            return PhasePlaneMLP(self.sigma.tag, *(vector.copy() for vector in vectors)), 0
+        parameters = np.concatenate([array.ravel() for array in (inner, *others, weights_out, biases_out)])
+        return MLPKernel(self.sigma.tag, self.widths, parameters), sum(self.widths) + count
+
+
+class PhasePlaneMLP(NamedTuple):
+    """One hidden layer over a single pair (q, p): weights and biases (n,), output biases (2,)."""
+
+    activation: NamedTuple
+    w_q: Array
+    w_p: Array
+    bias: Array
+    to_dq: Array
+    to_dp: Array
+    bias_out: Array
+
+
+@implements_rhs(PhasePlaneMLP)
+def _phase_plane_mlp(kernel, t, x, dx, work):
+    activation, w_q, w_p, bias, to_dq, to_dp, bias_out = kernel
+    q, p = x[0], x[1]
+    dq = 0.0
+    dp = 0.0
+    for k in range(bias.size):
+        a = value(activation, w_q[k] * q + w_p[k] * p + bias[k])
+        dq += a * to_dq[k]
+        dp += a * to_dp[k]
+    dx[0] = dq + bias_out[0]
+    dx[1] = dp + bias_out[1]
+
+
+class MLPKernel(NamedTuple):
+    """Any number of states and hidden layers; widths and parameters as in `Network`."""
+
+    activation: NamedTuple
+    widths: tuple[int, ...]
+    parameters: Array
+
+
+@implements_rhs(MLPKernel)
+def _mlp(kernel, t, x, dx, work):
+    activation, widths, parameters = kernel
+    # work: the inputs, then each layer's values, then the outputs
+    for j in range(x.size):
+        work[j] = x[j]
+    values = offset(0)
+    weights = offset(0)
+    for layer in range(1, len(widths)):
+        n = offset(widths[layer - 1])
+        m = offset(widths[layer])
+        forward(parameters, weights, n, m, work, values, values + n)
+        values += n
+        weights += n * m + m
+        for k in range(m):
+            work[values + k] = value(activation, work[values + k])
+    n = offset(widths[len(widths) - 1])
+    forward(parameters, weights, n, offset(x.size), work, values, values + n)
+    for i in range(x.size):
+        dx[i] = work[values + n + offset(i)]

@@ -1,0 +1,71 @@
+"""Sets of monomials in several variables, as rows of exponents."""
+
+import itertools
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexsurr.simulation.rhs import Array
+
+Exponents = NDArray[np.int64]
+
+
+def monomials_to_degree(variables: int, degree: int) -> Exponents:
+    """All monomials of total degree 1 … `degree`, by degree: (count, variables). No constant."""
+    rows = [
+        np.bincount(np.array(chosen), minlength=variables)
+        for total in range(1, degree + 1)
+        for chosen in itertools.combinations_with_replacement(range(variables), total)
+    ]
+    return np.array(rows, dtype=np.int64)
+
+
+def evaluate_monomials(exponents: Exponents, x: Array) -> Array:
+    """The monomials (count, d) at `x` (..., d), shape (..., count)."""
+    powers = x[..., None] ** np.arange(int(exponents.max(initial=0)) + 1)
+    result = powers[..., 0, exponents[:, 0]]
+    for variable in range(1, exponents.shape[1]):
+        result = result * powers[..., variable, exponents[:, variable]]
+    return result
+
+
+def differentiate(exponents: Exponents) -> tuple[Exponents, Array]:
+    """Monomials (m, d) and a tensor (d, m, count) with ∂(monomial i)/∂x_j = Σ_k tensor[j, k, i] lower_k.
+
+    The lower monomials are ordered by degree and closed: each but the constant, which comes first,
+    is another one of them times a variable.
+    """
+    count, d = exponents.shape
+    lowered = exponents[:, None, :] - np.eye(d, dtype=np.int64)
+    present = {tuple(row) for row in lowered.reshape(-1, d).tolist() if min(row) >= 0}
+    present.add((0,) * d)
+    pending = list(present)
+    while pending:
+        parent = _divided(pending.pop())
+        if parent not in present:
+            present.add(parent)
+            pending.append(parent)
+    ordered = sorted(present, key=lambda row: (sum(row), row))
+    place = {row: k for k, row in enumerate(ordered)}
+    tensor = np.zeros((d, len(ordered), count))
+    for i, j in np.argwhere(exponents > 0):
+        tensor[j, place[tuple(lowered[i, j].tolist())], i] = exponents[i, j]
+    return np.array(ordered, dtype=np.int64), tensor
+
+
+def products(exponents: Exponents) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Of a closed set, after its constant: monomial k + 1 is monomial parents[k] times x[variables[k]]."""
+    place = {tuple(row): k for k, row in enumerate(exponents.tolist())}
+    rows = [tuple(row) for row in exponents[1:].tolist()]
+    parents = np.array([place[_divided(row)] for row in rows], dtype=np.int64)
+    return parents, np.array([_last_variable(row) for row in rows], dtype=np.int64)
+
+
+def _last_variable(row: tuple[int, ...]) -> int:
+    return max((j for j, power in enumerate(row) if power), default=0)
+
+
+def _divided(row: tuple[int, ...]) -> tuple[int, ...]:
+    """The monomial over its last variable; the constant is its own."""
+    j = _last_variable(row)
+    return (*row[:j], max(row[j] - 1, 0), *row[j + 1 :])

@@ -1,0 +1,137 @@
+"""Polynomial Hamiltonian: linear in its coefficients, the baseline to hold networks against."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexsurr.simulation.rhs import Array, implements_rhs
+from flexsurr.surrogates.layers import offset
+from flexsurr.surrogates.monomials import Exponents, differentiate, evaluate_monomials, products
+from flexsurr.surrogates.surrogate import Surrogate, symplectic
+
+
+@dataclass(frozen=True, eq=False)
+class PolynomialHamiltonian(Surrogate):
+    """q̇ = ∂H/∂p, ṗ = −∂H/∂q with H = Σ c_i q^α_i p^β_i of scaled states; `exponents` (count, 2r).
+
+    Any set of monomials. Where there is one pair (q, p) and H = ½ p² w(q) + V(q), the compiled form
+    is Horner's scheme, in q² if no odd power of q occurs; else a table of monomials.
+    """
+
+    exponents: Exponents
+
+    architecture: ClassVar[str] = "polynomial"
+
+    def __post_init__(self) -> None:
+        shape = self.exponents.shape
+        if len(shape) != 2 or shape[1] != len(self.state_names) or self.exponents.min(initial=0) < 0:
+            raise ValueError(f"exponents must be whole numbers ≥ 0, a column for each state, not {shape}")
+        super().__post_init__()
+
+    @property
+    def parameter_count(self) -> int:
+        """One coefficient a monomial."""
+        return len(self.exponents)
+
+    @property
+    def degree(self) -> int:
+        """Highest total degree."""
+        return int(self.exponents.sum(axis=1).max(initial=0))
+
+    @cached_property
+    def _gradient(self) -> tuple[Exponents, Array]:
+        """The monomials of ∇Ĥ and their coefficients (2r, count)."""
+        lower, tensor = differentiate(self.exponents)
+        return lower, tensor @ self.parameters
+
+    def scaled_energy(self, x: Array) -> Array:
+        """Ĥ of scaled states, (..., 2r) -> (...); zero at the origin."""
+        return evaluate_monomials(self.exponents, x) @ self.parameters
+
+    def scaled_field(self, x: Array) -> Array:
+        """Hamilton's equations of Ĥ."""
+        lower, coefficients = self._gradient
+        return symplectic(evaluate_monomials(lower, x) @ coefficients.T)
+
+    def energy(self, x: Array) -> Array:
+        """H(x) − H(0), (..., 2r) -> (...), in the product of the units of q and p per second."""
+        return self.scaling.energy * self.scaled_energy(x / self.scaling.states(len(self.state_names)))
+
+    def kernel(self) -> tuple[NamedTuple, int]:
+        """Horner's scheme where it applies, else a table of monomials."""
+        if self.exponents.shape[1] == 2 and set(self.exponents[:, 1].tolist()) <= {0, 2}:
+            return self._oscillator(), 0
+        lower, coefficients = self._gradient
+        count = len(self.state_names)
+        parents, variables = products(lower)
+        unscaled = symplectic(coefficients.T).T * self.scaling.rates(count)[:, None]
+        unscaled /= evaluate_monomials(lower, self.scaling.states(count))
+        return PolynomialKernel(parents, variables, unscaled.ravel()), len(lower)
+
+    def _oscillator(self) -> "OscillatorPolynomial":
+        step = 1 if np.any(self.exponents[:, 0] % 2) else 2
+        table = np.zeros((3, int(self.exponents[:, 0].max(initial=0)) // step + 1))
+        for (i, j), coefficient in zip(self.exponents.tolist(), self.parameters.tolist(), strict=True):
+            k = i // step
+            c = coefficient * self.scaling.energy / self.scaling.q**i / self.scaling.p**j
+            if j == 2:
+                table[0, k] += 2.0 * c
+            if k > 0:
+                table[1 if j == 2 else 2, k - 1] += k * c
+        return OscillatorPolynomial(float(step), *(row.copy() for row in table))
+
+    def settings(self) -> dict[str, Any]:
+        """Nothing: the exponents are saved as an array."""
+        return {}
+
+
+class OscillatorPolynomial(NamedTuple):
+    """H = ½ p² w(s) + V(s) with s = q (`step` 1) or q² (`step` 2): coefficients, lowest first, each (n,)."""
+
+    step: float
+    w: Array
+    half_dw_ds: Array
+    dv_ds: Array
+
+
+@implements_rhs(OscillatorPolynomial)
+def _oscillator_polynomial(kernel, t, x, dx, work):
+    step, w, half_dw_ds, dv_ds = kernel
+    q, p = x[0], x[1]
+    s = q if step == 1.0 else q * q
+    ds_dq = 1.0 if step == 1.0 else 2.0 * q
+    inverse_mass = 0.0
+    kinetic = 0.0
+    potential = 0.0
+    for k in range(w.size - 1, -1, -1):
+        inverse_mass = inverse_mass * s + w[k]
+        kinetic = kinetic * s + half_dw_ds[k]
+        potential = potential * s + dv_ds[k]
+    dx[0] = inverse_mass * p
+    dx[1] = -ds_dq * (p * p * kinetic + potential)
+
+
+class PolynomialKernel(NamedTuple):
+    """ẋ_i = Σ_k c_ik m_k, m_0 = 1 and m_k+1 = m_parent[k] x_variable[k]; `coefficients` row by row."""
+
+    parents: NDArray[np.int64]
+    variables: NDArray[np.int64]
+    coefficients: Array
+
+
+@implements_rhs(PolynomialKernel)
+def _polynomial(kernel, t, x, dx, work):
+    parents, variables, coefficients = kernel
+    work[0] = 1.0
+    for k in range(parents.size):
+        work[k + 1] = work[parents[k]] * x[variables[k]]
+    count = offset(parents.size + 1)
+    for i in range(x.size):
+        row = offset(i) * count
+        total = 0.0
+        for k in range(count):
+            total += coefficients[row + k] * work[k]
+        dx[i] = total

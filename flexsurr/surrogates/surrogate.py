@@ -1,0 +1,75 @@
+"""What every surrogate is: a right-hand side ẋ = f(x) learned in scaled states."""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import Any, ClassVar, NamedTuple, Protocol, runtime_checkable
+
+import numpy as np
+
+from flexsurr.simulation.rhs import Array
+from flexsurr.surrogates.scaling import Scaling
+
+
+@dataclass(frozen=True, eq=False)
+class Surrogate(ABC):
+    """An autonomous model of the states x = (q, p) in plain NumPy; `compiled` gives its fast form.
+
+    `parameters` are its weights in one vector. A subclass is a field of the *scaled* states, from
+    (..., 2r) to (..., 2r); scaling and units are dealt with here.
+    """
+
+    parameters: Array
+    scaling: Scaling
+    state_names: tuple[str, ...]
+    state_units: tuple[str, ...]
+
+    architecture: ClassVar[str]
+    breakpoints: ClassVar[tuple[float, ...]] = ()
+
+    def __post_init__(self) -> None:
+        if len(self.state_names) % 2 or len(self.state_names) != len(self.state_units):
+            raise ValueError(
+                f"states come in pairs (q, p) with a unit each, not {self.state_names} in {self.state_units}"
+            )
+        if self.parameters.shape != (self.parameter_count,):
+            raise ValueError(
+                f"this {self.architecture} has {self.parameter_count} parameters,"
+                f" not an array of shape {self.parameters.shape}"
+            )
+
+    @property
+    @abstractmethod
+    def parameter_count(self) -> int:
+        """Number of parameters that the architecture asks for."""
+
+    @abstractmethod
+    def scaled_field(self, x: Array) -> Array:
+        """The scaled states' derivatives with respect to the scaled time, (..., 2r) -> (..., 2r)."""
+
+    @abstractmethod
+    def kernel(self) -> tuple[NamedTuple, int]:
+        """The compiled form, scales folded in, and the size of its workspace."""
+
+    @abstractmethod
+    def settings(self) -> dict[str, Any]:
+        """What, besides parameters, scaling and states, makes this surrogate; plain JSON values."""
+
+    def derivative(self, t: float, x: Array) -> Array:
+        """ẋ (..., 2r) at states `x` (..., 2r), in the units of the states per second."""
+        count = len(self.state_names)
+        return self.scaling.rates(count) * self.scaled_field(x / self.scaling.states(count))
+
+
+@runtime_checkable
+class Hamiltonian(Protocol):
+    """Anything that knows its energy."""
+
+    def energy(self, x: Array) -> Array:
+        """H(x) − H(0), (..., 2r) -> (...), in the product of the units of q and p per second."""
+        ...
+
+
+def symplectic(gradient: Array) -> Array:
+    """(∂H/∂q, ∂H/∂p) -> (∂H/∂p, −∂H/∂q), both (..., 2r): Hamilton's equations."""
+    r = gradient.shape[-1] // 2
+    return np.concatenate([gradient[..., r:], -gradient[..., :r]], axis=-1)
