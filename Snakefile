@@ -6,9 +6,21 @@
 # Here the configuration is checked and the rules are included; the jobs are planned in
 # flexsurr/workflow/plan.py, and each rule runs one command of flexsurr/cli.
 
+from pathlib import Path
+
+from snakemake.exceptions import WorkflowError
 from snakemake.utils import min_version
 
+from flexsurr.config.errors import ConfigurationError
+from flexsurr.config.reading import read_yaml
+
 min_version("9.20")
+
+# Snakemake would say that the file is not YAML, but neither which file nor where in it.
+try:
+    read_yaml(Path("config/config.yaml"))
+except ConfigurationError as error:
+    raise WorkflowError(str(error)) from None
 
 
 configfile: "config/config.yaml"

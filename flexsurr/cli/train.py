@@ -1,9 +1,13 @@
 """Train one surrogate: a trial of a sweep on the data of one variant."""
 
+import fcntl
 import json
 import logging
 import math
+import os
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +29,27 @@ def main(job: Job, manifest: Path, store: Path, folder: Path) -> None:
     A trial that diverges ends well, with status "failed", its reason, and an empty weights.npz where
     it has no weights to keep.
     """
+    with _alone_in(folder):
+        _train(job, manifest, store, folder)
+
+
+@contextmanager
+def _alone_in(folder: Path) -> Iterator[None]:
+    """Keep a second process out: one killed with its Snakemake may still be at work on the same run."""
+    folder.mkdir(parents=True, exist_ok=True)
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            log.info("waiting for another process that trains this run")
+            fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(handle)
+
+
+def _train(job: Job, manifest: Path, store: Path, folder: Path) -> None:
     trial = Trial.model_validate(job["trial"])
     dataset = load_dataset(manifest)
     described = {**job, "dataset_sha256": dataset.sha256}

@@ -12,10 +12,11 @@ from typing import Any
 def replacing(path: Path) -> Iterator[Path]:
     """A path beside `path` to write to; it takes the place of `path` when the block ends well.
 
-    A process killed inside the block leaves `path` as it was.
+    A process killed inside the block leaves `path` as it was; what it leaves beside is used up by the
+    next that writes there. Two processes must not write the same `path` at once.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
-    beside = path.with_name(f".{path.name}.{os.getpid()}.part")
+    beside = path.with_name(f".{path.name}.part")
     try:
         yield beside
         os.replace(beside, path)

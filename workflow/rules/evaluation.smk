@@ -30,11 +30,11 @@ rule evaluate:
         f"{RESULTS}/evaluation/{{study}}/cost-{{variant}}-{{response}}.parquet",
     log:
         f"{RESULTS}/logs/evaluate/{{study}}-{{variant}}-{{response}}.log",
+    threads: plan.settings.timing.cores or workflow.cores or 1
     params:
         job=job("cost", "study", "variant", "response"),
         code=code("evaluate"),
         runs=f"{RESULTS}/runs",
-    threads: plan.settings.timing.cores or workflow.cores or 1
     message:
         "timing the {wildcards.response} response of {wildcards.study}, {wildcards.variant}"
     shell:

@@ -46,12 +46,18 @@ for study in STUDIES:
         name:
             f"select_{study}"
         input:
-            fits=expand(f"{RESULTS}/runs/{{run_id}}/fit.json", run_id=plan.runs_of(study)),
-            weights=expand(f"{RESULTS}/runs/{{run_id}}/weights.npz", run_id=plan.runs_of(study)),
+            fits=expand(
+                f"{RESULTS}/runs/{{run_id}}/fit.json", run_id=plan.runs_of(study)
+            ),
+            weights=expand(
+                f"{RESULTS}/runs/{{run_id}}/weights.npz", run_id=plan.runs_of(study)
+            ),
             store=ancient(rules.tracking_store.output[0]),
         output:
             selection=f"{RESULTS}/selected/{study}.json",
-            metrics=expand(f"{RESULTS}/runs/{{run_id}}/metrics.json", run_id=plan.runs_of(study)),
+            metrics=expand(
+                f"{RESULTS}/runs/{{run_id}}/metrics.json", run_id=plan.runs_of(study)
+            ),
         log:
             f"{RESULTS}/logs/select/{study}.log",
         params:

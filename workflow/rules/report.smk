@@ -10,7 +10,11 @@ for study in STUDIES:
             name:
                 f"draw_{study}_{'_'.join(same)}"
             input:
-                [f"{RESULTS}/{file}" for read in reads for file in plan.files(study, read)],
+                [
+                    f"{RESULTS}/{file}"
+                    for read in reads
+                    for file in plan.files(study, read)
+                ],
             output:
                 *(
                     report(
@@ -43,7 +47,11 @@ for table in TABLES:
             name:
                 f"tabulate_{study}_{table}"
             input:
-                files=[f"{RESULTS}/{file}" for read in TABLES[table].reads for file in plan.files(study, read)],
+                files=[
+                    f"{RESULTS}/{file}"
+                    for read in TABLES[table].reads
+                    for file in plan.files(study, read)
+                ],
                 caption=f"{workflow.basedir}/workflow/report/{table}.rst",
             output:
                 csv=f"{RESULTS}/tables/{study}/{table}.csv",
@@ -82,4 +90,3 @@ for table in TABLES:
         shell:
             "python -m flexsurr.cli.join --job {params.job:q} --inputs {input:q} --output {output:q}"
             " > {log:q} 2>&1"
-

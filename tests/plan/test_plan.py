@@ -1,0 +1,130 @@
+"""What each job depends on: changing a value changes the jobs that need it, and no others."""
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+import yaml
+
+from flexsurr.config.settings import load
+from flexsurr.workflow.plan import Plan
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+QUICK = "config/presets/quick.yaml"
+STUDY, SWEEP = "config/studies/cantilever.yaml", "config/sweeps/quick.yaml"
+STRUCTURE = "config/structures/cantilever.yaml"
+BEAM = "cantilever"
+
+
+@pytest.fixture
+def root(tmp_path: Path) -> Path:
+    shutil.copytree(REPOSITORY / "config", tmp_path / "config")
+    return tmp_path
+
+
+def plan(root: Path) -> Plan:
+    return Plan(load(root, ["config/config.yaml", QUICK]))
+
+
+def jobs(root: Path) -> dict[str, str]:
+    """Every job of the quick preset as text, by rule and wildcards."""
+    p = plan(root)
+    found = {"store": p.store(), f"select {BEAM}": p.select(BEAM)}
+    found |= {f"statics {BEAM}": p.statics(BEAM), f"validation {BEAM}": p.validation(BEAM)}
+    found |= {f"train {key}": p.train(key) for key in p.runs}
+    for variant in p.variants(BEAM):
+        found[f"manifest {variant}"] = p.manifest(BEAM, variant)
+        found[f"respond {variant}"] = p.respond(BEAM, variant)
+        for response in ("free", "forced"):
+            found[f"cost {variant} {response}"] = p.cost(BEAM, variant, response)
+        for shard in range(p.shards(BEAM)):
+            found[f"simulate {variant} {shard}"] = p.simulate(BEAM, variant, shard)
+    return {name: json.dumps(job, sort_keys=True) for name, job in found.items()}
+
+
+def change(root: Path, file: str, keys: str, value: object) -> None:
+    content = yaml.safe_load((root / file).read_text())
+    inner = content
+    *path, last = [int(key) if key.isdigit() else key for key in keys.split(".")]
+    for key in path:
+        inner = inner.setdefault(key, {}) if isinstance(inner, dict) else inner[key]
+    inner[last] = value
+    (root / file).write_text(yaml.safe_dump(content))
+
+
+ALL_DATA = {"simulate", "manifest"}
+JUDGED = {"select", "respond", "cost"}
+OVER = f"overrides.{BEAM}"
+
+CHANGES = [
+    (STRUCTURE, "length_m", 1.1, ALL_DATA | JUDGED | {"statics", "validation"}),
+    (STUDY, "seed", 7, ALL_DATA | JUDGED),
+    (STUDY, "dataset.step_s", 0.002, ALL_DATA),
+    (STUDY, "dataset.training_fraction", 0.7, {"manifest"}),
+    (STUDY, "dataset.initial_conditions.q_max_deg", 10.0, ALL_DATA | JUDGED),
+    (STUDY, "evaluation.force.amplitude_N", 5.0, {"validation", "respond", "cost"}),
+    (QUICK, f"{OVER}.dataset.trajectories", 9, {"manifest", "simulate"}),
+    (QUICK, f"{OVER}.evaluation.repeats", 2, {"cost"}),
+    (QUICK, f"{OVER}.evaluation.described_simulations", 2, {"cost"}),
+    (QUICK, f"{OVER}.evaluation.simulations", 3, {"respond", "cost"}),
+    (QUICK, f"{OVER}.evaluation.long_responses", 3, {"select"}),
+    (QUICK, f"{OVER}.evaluation.duration_s", 0.3, JUDGED),
+    (QUICK, f"{OVER}.statics.tip_loads_N", [0, 10], {"statics"}),
+    (SWEEP, "spaces.0.epochs", [21], {"train", "select"}),
+    ("config/config.yaml", "tracking.uri", "http://127.0.0.1:5000", {"store"}),
+    ("config/config.yaml", "timing.cores", 1, set()),
+    ("config/config.yaml", "results", "elsewhere", set()),
+]
+
+
+@pytest.mark.parametrize(("file", "keys", "value", "rules"), CHANGES)
+def test_a_value_changes_the_jobs_that_depend_on_it_and_no_others(root, file, keys, value, rules):
+    before = jobs(root)
+    change(root, file, keys, value)
+    after = jobs(root)
+    assert before != after or not rules
+    assert {name.split()[0] for name in before.keys() | after if before.get(name) != after.get(name)} == rules
+
+
+def test_more_trajectories_leave_the_shards_that_are_there(root):
+    before = jobs(root)
+    change(root, QUICK, f"{OVER}.dataset.trajectories", 9)
+    after = jobs(root)
+    assert {name for name in after if name.startswith("simulate") and before.get(name) != after[name]} == {
+        "simulate hamiltonian 2",
+        "simulate as_printed 2",
+    }
+
+
+def test_a_new_value_of_the_sweep_adds_its_runs_and_leaves_the_others(root):
+    before = jobs(root)
+    change(root, SWEEP, "spaces.0.hidden", [[8], [9]])
+    after = jobs(root)
+    added = after.keys() - before.keys()
+    assert len(added) == 2
+    assert all(name.startswith("train hnn-") for name in added)
+    assert {name for name in before if before[name] != after[name]} == {f"select {BEAM}"}
+
+
+def test_a_run_is_named_by_its_content(root):
+    for key, run in plan(root).runs.items():
+        assert key.startswith(f"{run.trial.architecture}-")
+    keys = list(plan(root).runs)
+    change(root, SWEEP, "spaces", yaml.safe_load((root / SWEEP).read_text())["spaces"][::-1])
+    assert sorted(plan(root).runs) == sorted(keys)
+
+
+def test_the_last_shard_holds_what_is_left(root):
+    change(root, QUICK, f"{OVER}.dataset.trajectories", 7)
+    shards = [plan(root).simulate(BEAM, "hamiltonian", shard) for shard in range(3)]
+    assert [(job["first"], job["count"]) for job in shards] == [(0, 3), (3, 3), (6, 1)]
+
+
+def test_the_papers_recipe_stands_beside_the_default_sweep():
+    configuration = load(REPOSITORY, ["config/config.yaml", "config/presets/paper.yaml"])
+    sweeps = Plan(configuration).select(BEAM)["sweeps"]
+    assert set(sweeps) == {"default", "paper"}
+    assert [key.split("-")[0] for key in sweeps["paper"]["hamiltonian"]] == ["hnn", "mlp"]
+    alone = Plan(load(REPOSITORY, ["config/config.yaml"]))
+    assert alone.runs.keys() < Plan(configuration).runs.keys()
