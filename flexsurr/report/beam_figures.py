@@ -12,6 +12,7 @@ from flexsurr.report.style import (
     PAGE_IN,
     VARIANTS,
     letter,
+    logarithmic,
     new_figure,
     styled,
 )
@@ -87,7 +88,7 @@ def _static_errors(ax: Axes, statics: pd.DataFrame) -> None:
             markerfacecolor="none",
             markersize=3.5,
         )
-    ax.set_yscale("log")
+    logarithmic(ax, y=True)
     ax.set(xlabel="tip load [N]", ylabel="distance [mm]", title=title, xlim=(0, None))
     ax.legend(loc="lower right")
 

@@ -7,8 +7,18 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from flexsurr.report.integrators import integrator_method
-from flexsurr.report.labels import place_labels
-from flexsurr.report.style import GREY, PAGE_IN, VARIANTS, colour, label, letter, new_figure, styled
+from flexsurr.report.labels import freeze_layout, place_labels
+from flexsurr.report.style import (
+    GREY,
+    PAGE_IN,
+    VARIANTS,
+    colour,
+    label,
+    letter,
+    logarithmic,
+    new_figure,
+    styled,
+)
 
 MARKERS: dict[str, str] = {"described": "s", "numpy": "D", "compiled": "o", "torch": "^"}
 
@@ -39,7 +49,7 @@ def cost_accuracy(cost: pd.DataFrame) -> Figure:
     grid = figure.subplots(len(responses), len(variants), sharex=True, sharey=True, squeeze=False)
     for row, response in zip(grid, responses, strict=True):
         for ax, variant in zip(row, variants, strict=True):
-            ax.set(xscale="log", yscale="log")
+            logarithmic(ax, x=True, y=True)
             ax.set_title(f"{response} response, {VARIANTS[variant]}", loc="left")
         row[0].set_ylabel("largest tip error [% of the peak]")
     for ax in grid[-1]:
@@ -47,6 +57,7 @@ def cost_accuracy(cost: pd.DataFrame) -> Figure:
     _legend(figure, cost)
     _limits(grid[0, 0], cost)
     letter(grid.ravel())
+    freeze_layout(figure)
     for row, response in zip(grid, responses, strict=True):
         for ax, variant in zip(row, variants, strict=True):
             _panel(ax, cost[(cost["response"] == response) & (cost["variant"] == variant)])

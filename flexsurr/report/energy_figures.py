@@ -6,7 +6,17 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from flexsurr.report.integrators import integrator_colour, integrator_name
-from flexsurr.report.style import PAGE_IN, VARIANTS, colour, dashes, label, letter, new_figure, styled
+from flexsurr.report.style import (
+    PAGE_IN,
+    VARIANTS,
+    colour,
+    dashes,
+    label,
+    letter,
+    logarithmic,
+    new_figure,
+    styled,
+)
 
 # What rounding leaves is no drift to compare.
 SMALLEST_PERCENT = 1e-12
@@ -63,6 +73,6 @@ def _drift(ax: Axes, part: pd.DataFrame, line: str, style: object, name: str) ->
     part = part[part["t_s"] > 0.0]
     worst = np.maximum.accumulate(np.maximum(part["drift_percent"], SMALLEST_PERCENT))
     ax.plot(part["t_s"], worst, color=line, linestyle=style, label=name)
-    ax.set_yscale("log")
+    logarithmic(ax, y=True)
     ax.margins(x=0.0)
     ax.set_xlabel("time [s]")

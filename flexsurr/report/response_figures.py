@@ -15,6 +15,7 @@ from flexsurr.report.style import (
     dashes,
     label,
     letter,
+    logarithmic,
     new_figure,
     styled,
 )
@@ -102,7 +103,7 @@ def _errors(ax: Axes, shown: pd.DataFrame, end_s: float) -> None:
         ax.plot(part["t_s"], worst, color=colour(model), linestyle=dashes(model))
         if part["t_s"].max() < end_s:
             ax.plot(part["t_s"].iloc[-1], worst.iloc[-1], "x", color=BLACK, markersize=5)
-    ax.set_yscale("log")
+    logarithmic(ax, y=True)
     ax.set(xlim=(0.0, end_s), xlabel="time [s]")
 
 

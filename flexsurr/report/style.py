@@ -10,6 +10,7 @@ import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullLocator
 
 Inputs = ParamSpec("Inputs")
 
@@ -130,6 +131,16 @@ def new_figure(width_in: float, height_in: float) -> Figure:
     figure = Figure(figsize=(width_in, height_in))
     FigureCanvasAgg(figure)
     return figure
+
+
+def logarithmic(ax: Axes, x: bool = False, y: bool = False) -> None:
+    """Logarithmic scales with ticks at decades only: the figures span too many to divide them."""
+    if x:
+        ax.set_xscale("log")
+        ax.xaxis.set_minor_locator(NullLocator())
+    if y:
+        ax.set_yscale("log")
+        ax.yaxis.set_minor_locator(NullLocator())
 
 
 def letter(axes: Iterable[Axes]) -> None:

@@ -14,6 +14,7 @@ from flexsurr.report.style import (
     VERMILION,
     label,
     letter,
+    logarithmic,
     new_figure,
     styled,
 )
@@ -51,7 +52,7 @@ def training_loss(history: pd.DataFrame, metrics: pd.DataFrame) -> Figure:
                 if run.optimiser != "least_squares" and run.run_id in curves:
                     _curves(ax, curves[run.run_id], str(run.optimiser))
             _points(ax, of_variant[of_variant["optimiser"] == "least_squares"])
-            ax.set(xscale="log", yscale="log")
+            logarithmic(ax, x=True, y=True)
             ax.set_title(f"{label(architecture)}, {VARIANTS[variant]}", loc="left")
         row[0].set_ylabel("loss (nmse)")
     for ax in grid[-1]:

@@ -1,0 +1,208 @@
+"""Small frames of the shape that evaluation writes, made up so that every feature of a figure appears."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from flexsurr.config.structure import Structure
+from flexsurr.evaluation.ratios import COST_COLUMNS
+
+VARIANTS = ("hamiltonian", "as_printed")
+MODELS = ("mlp", "hnn", "polynomial")
+
+
+@pytest.fixture
+def structure() -> Structure:
+    return Structure(
+        name="cantilever",
+        length_m=1.0,
+        elements=10,
+        joints=("out_of_plane",),
+        mass_per_length_kg_m=0.2,
+        bending_stiffness_out_of_plane_N_m2=50.0,
+    )
+
+
+@pytest.fixture
+def statics() -> pd.DataFrame:
+    load = np.arange(0.0, 151.0, 50.0)
+    x, z = 1.0 - 1e-3 * load, 4e-3 * load
+    return pd.DataFrame(
+        {
+            "load_N": load,
+            "x_exact_m": x,
+            "z_exact_m": z,
+            "x_fom_m": x + 1e-6 * load,
+            "z_fom_m": z + 1e-6 * load,
+            "x_rom_m": x + 1e-4 * load,
+            "z_rom_m": z - 1e-4 * load,
+        }
+    )
+
+
+@pytest.fixture
+def validation() -> pd.DataFrame:
+    t = np.linspace(0.0, 1.0, 201)
+    frames = []
+    for variant, shift in zip(VARIANTS, (0.0, 0.05), strict=True):
+        for model, lag in (("fom", 0.0), ("rom", 0.01)):
+            z = 0.5 * np.sin(50.0 * t + shift + lag)
+            frames.append(
+                pd.DataFrame({"variant": variant, "model": model, "t_s": t, "tip_x_m": 1.0, "tip_z_m": z})
+            )
+    return pd.concat(frames, ignore_index=True)
+
+
+def make_response(response: str, variants: tuple[str, ...] = VARIANTS) -> pd.DataFrame:
+    t = np.linspace(0.0, 8.0, 1601)
+    frames = []
+    for variant in variants:
+        for k, model in enumerate(("reference", *MODELS)):
+            # one surrogate fails half-way
+            shown = t if model != "mlp" else t[: t.size // 2]
+            frames.append(
+                pd.DataFrame(
+                    {
+                        "variant": variant,
+                        "response": response,
+                        "model": model,
+                        "t_s": shown,
+                        "tip_x_m": 1.0,
+                        "tip_z_m": 0.4 * np.sin(50.0 * shown + 1e-3 * k * shown),
+                        "tip_error_percent": 10.0**-k * shown,
+                        "load_end_s": 3.0 if response == "forced" else 0.0,
+                    }
+                )
+            )
+    return pd.concat(frames, ignore_index=True)
+
+
+@pytest.fixture
+def free() -> pd.DataFrame:
+    return make_response("free")
+
+
+@pytest.fixture
+def forced() -> pd.DataFrame:
+    return make_response("forced")
+
+
+@pytest.fixture
+def energy() -> pd.DataFrame:
+    t = np.linspace(0.0, 8.0, 161)
+    setups = [("models", model, "gauss_legendre_6(h=0.0025)") for model in ("rom", *MODELS)]
+    setups += [
+        ("integrators", "rom", name)
+        for name in ("scipy_radau", "rk4(h=0.001)", "dop853(rtol=1e-07,atol=1e-09)")
+    ]
+    return pd.concat(
+        [
+            pd.DataFrame(
+                {
+                    "panel": panel,
+                    "variant": variant,
+                    "model": model,
+                    "integrator": integrator,
+                    "t_s": t,
+                    "energy_J": 5.0 + 10.0**-k * t,
+                    "drift_percent": 20.0 * 10.0**-k * t,
+                }
+            )
+            for variant in VARIANTS
+            for k, (panel, model, integrator) in enumerate(setups)
+        ],
+        ignore_index=True,
+    )
+
+
+@pytest.fixture
+def cost() -> pd.DataFrame:
+    rows = []
+    for variant in VARIANTS:
+        for response in ("free", "forced"):
+            for k, model in enumerate(("rom", *MODELS)):
+                wall = {"numpy": 1.0 / (k + 1), "compiled": 0.5}
+                wall |= {"described": 20.0} if model == "rom" else {"torch": 4.0}
+                for implementation, seconds in wall.items():
+                    rows.append((variant, response, model, implementation, "scipy_radau", seconds, 50.0 + k))
+                for power, integrator in enumerate(("dop853_fixed(h=0.01)", "rk4(h=0.001)")):
+                    error = float("nan") if model == "mlp" and power else 10.0 ** (-2 * power - k)
+                    rows.append(
+                        (
+                            variant,
+                            response,
+                            model,
+                            "compiled",
+                            integrator,
+                            1e-3 * (power + 1) / (k + 1),
+                            error,
+                        )
+                    )
+    frame = pd.DataFrame(
+        rows,
+        columns=[
+            "variant",
+            "response",
+            "model",
+            "implementation",
+            "integrator",
+            "wall_s_mean",
+            "tip_error_percent",
+        ],
+    )
+    frame["study"] = "cantilever"
+    frame["simulations"] = 3
+    frame["diverged"] = 3 * frame["tip_error_percent"].isna()
+    frame.loc[frame["diverged"] > 0, "wall_s_mean"] = float("nan")
+    frame["paper_percent"] = frame["model"].map({"hnn": 1.29})
+    return frame.reindex(columns=[*COST_COLUMNS])
+
+
+@pytest.fixture
+def metrics() -> pd.DataFrame:
+    rows = []
+    for variant in VARIANTS:
+        for architecture, optimiser in (
+            ("hnn", "levenberg_marquardt"),
+            ("hnn", "adam"),
+            ("mlp", "lbfgs"),
+            ("polynomial", "least_squares"),
+        ):
+            rows.append(
+                {
+                    "study": "cantilever",
+                    "variant": variant,
+                    "run_id": f"{architecture}-{optimiser}-{variant}",
+                    "architecture": architecture,
+                    "hidden": "" if architecture == "polynomial" else "16",
+                    "activation": None if architecture == "polynomial" else "half_log",
+                    "optimiser": optimiser,
+                    "epochs": 10,
+                    "wall_s": 0.2,
+                    "train_nmse": 1e-8,
+                    "validation_nmse": 2e-8,
+                    "status": "finished",
+                }
+            )
+    rows[0] |= {"status": "failed", "train_nmse": None, "validation_nmse": None}
+    return pd.DataFrame(rows)
+
+
+@pytest.fixture
+def history(metrics) -> pd.DataFrame:
+    epoch = np.arange(10)
+    return pd.concat(
+        [
+            pd.DataFrame(
+                {
+                    "run_id": run_id,
+                    "epoch": epoch,
+                    "wall_s": 0.1 * epoch,
+                    "train_loss": 10.0**-epoch,
+                    "validation_loss": 2.0 * 10.0**-epoch,
+                }
+            )
+            for run_id in metrics["run_id"]
+        ],
+        ignore_index=True,
+    )

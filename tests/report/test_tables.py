@@ -1,0 +1,93 @@
+"""The columns of the tables are a contract; the files are atomic and complete."""
+
+import pandas as pd
+import pytest
+
+from flexsurr.report import TABLES, save_page, save_table
+from flexsurr.report.cost_figures import pareto_front
+
+CONTRACT = {
+    "static_tip": "load_N, x_exact_m, z_exact_m, x_fom_m, z_fom_m, x_rom_m, z_rom_m",
+    "natural_frequencies": "structure, mode, fom_rad_s, rom_rad_s, published_fom_rad_s, published_rom_rad_s",
+    "training": "study, variant, run_id, architecture, hidden, activation, optimiser, epochs, wall_s, "
+    "train_nmse, validation_nmse",
+    "cost": "study, variant, response, model, implementation, integrator, simulations, wall_s_mean, "
+    "wall_s_std, relative_to_described_percent, relative_to_described_std_percent, "
+    "relative_to_numpy_percent, relative_to_compiled_percent, paper_percent, paper_std_percent, "
+    "tip_error_percent, energy_drift_percent, diverged",
+}
+
+
+@pytest.fixture
+def frames(statics, metrics, cost):
+    frequencies = pd.DataFrame(
+        {
+            "structure": ["wing"] * 2,
+            "mode": [1, 2],
+            "fom_rad_s": [2.2, 9.5],
+            "rom_rad_s": [2.2, None],
+            "published_fom_rad_s": [2.21, 9.55],
+            "published_rom_rad_s": [2.21, 9.59],
+            "exact_rad_s": [None, None],
+        }
+    )
+    return {"static_tip": statics, "natural_frequencies": frequencies, "training": metrics, "cost": cost}
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_columns_are_those_of_the_contract(name, frames):
+    # more columns in, shuffled: exactly the contract's out, in its order
+    frame = frames[name].assign(surplus=1.0).iloc[:, ::-1]
+    assert ", ".join(TABLES[name].make(frame).columns) == CONTRACT[name]
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_a_missing_column_is_named(name, frames):
+    column = CONTRACT[name].split(", ")[1]
+    with pytest.raises(KeyError, match=column):
+        TABLES[name].make(frames[name].drop(columns=column))
+
+
+def test_failed_runs_stay_in_the_table_of_training(frames):
+    made = TABLES["training"].make(frames["training"])
+    assert len(made) == len(frames["training"])
+    assert made["validation_nmse"].isna().sum() == 1
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_csv_and_page_hold_every_row(name, frames, tmp_path):
+    made = TABLES[name].make(frames[name])
+    save_table(made, tmp_path / "table.csv")
+    save_page(made, "A < B", "What each row is & why.", tmp_path / "table.html")
+    back = pd.read_csv(tmp_path / "table.csv")
+    assert list(back.columns) == list(made.columns)
+    assert len(back) == len(made)
+    for column in made.select_dtypes("number"):
+        pd.testing.assert_series_equal(back[column], made[column], check_dtype=False, rtol=1e-8)
+    page = (tmp_path / "table.html").read_text(encoding="utf-8")
+    assert page.count("<tr>") == len(made) + 1
+    assert "A &lt; B" in page
+    assert "What each row is &amp; why." in page
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["table.csv", "table.html"]
+
+
+def test_unknown_numbers_are_empty_cells(frames, tmp_path):
+    save_page(TABLES["cost"].make(frames["cost"]), "Cost", "", tmp_path / "cost.html")
+    page = (tmp_path / "cost.html").read_text(encoding="utf-8")
+    assert "nan" not in page.lower()
+
+
+def test_nothing_beats_a_row_of_the_pareto_front(cost):
+    panel = cost[(cost["variant"] == "hamiltonian") & (cost["response"] == "free")]
+    front = pareto_front(panel)
+    assert not front.empty
+    for row in front.itertuples():
+        better = (panel["wall_s_mean"] <= row.wall_s_mean) & (
+            panel["tip_error_percent"] <= row.tip_error_percent
+        )
+        assert better.sum() == 1
+    for row in panel.dropna(subset=["wall_s_mean", "tip_error_percent"]).itertuples():
+        beaten_or_on_it = (front["wall_s_mean"] <= row.wall_s_mean) & (
+            front["tip_error_percent"] <= row.tip_error_percent
+        )
+        assert beaten_or_on_it.any()
