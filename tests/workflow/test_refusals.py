@@ -10,7 +10,7 @@ import pytest
             "config/structures/cantilever.yaml",
             "length_mm",
             1000,
-            "config/structures/cantilever.yaml: length_mm: unknown key (value 1000); did you mean 'length_m'?",
+            "config/structures/cantilever.yaml: length_mm: unknown key (value 1000); did you mean 'length_m'",
         ),
         (
             "config/presets/quick.yaml",

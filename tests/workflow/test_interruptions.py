@@ -1,0 +1,143 @@
+"""Killed jobs, a killed Snakemake, Ctrl-C: running again ends with the same results and nothing half done."""
+
+import json
+import os
+import re
+import signal
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mlflow import MlflowClient
+from project import eventually
+
+from flexsurr.training.tracking import RUN_KEY, store_uri
+
+BEAM = "cantilever"
+TARGETS = (f"results/selected/{BEAM}.json",)
+LONG_SWEEP = """
+search: grid
+spaces:
+  - architecture: hnn
+    hidden: [[8]]
+    activation: [tanh]
+    optimiser: [adam]
+    epochs: [150]
+    batch_size: [8]
+    learning_rate: [1.0e-3]
+"""
+
+
+@pytest.fixture(scope="module")
+def prepared(quick, make_project):
+    """The quick preset with one long training instead of its sweep, not yet run."""
+    project = make_project(start_from=quick.root)
+    (project.root / "config/sweeps/quick.yaml").write_text(LONG_SWEEP)
+    return project
+
+
+@pytest.fixture(scope="module")
+def undisturbed(prepared, make_project):
+    project = make_project(start_from=prepared.root)
+    project.run_well(*TARGETS)
+    return project
+
+
+@pytest.fixture
+def disturbed(prepared, make_project):
+    return make_project(start_from=prepared.root)
+
+
+def training_processes(project) -> list[int]:
+    """Of every train command at work in this project, found by what /proc says of it."""
+    found = []
+    for folder in Path("/proc").glob("[0-9]*"):
+        try:
+            words = (folder / "cmdline").read_bytes().split(b"\0")
+            here = (folder / "cwd").resolve() == project.root.resolve()
+        except OSError:
+            continue
+        if here and b"flexsurr.cli.train" in words and b"-m" in words[:3]:
+            found.append(int(folder.name))
+    return found
+
+
+def wait_until_it_learns(project) -> list[int]:
+    """Wait until a training has told of its progress; the processes that train."""
+    for path in project.results.glob("logs/train/*.log"):
+        path.unlink()
+
+    def learning() -> bool:
+        logs = [path.read_text() for path in project.results.glob("logs/train/hnn-*.log")]
+        return any("epoch" in text for text in logs) and len(training_processes(project)) > 0
+
+    eventually(learning)
+    return training_processes(project)
+
+
+def results_of(project) -> dict[str, dict]:
+    """Losses and weights of every run of the long sweep."""
+    found = {}
+    for key in project.plan.runs:
+        folder = project.results / "runs" / key
+        fit = json.loads((folder / "fit.json").read_text())
+        with np.load(folder / "weights.npz") as weights:
+            found[key] = {name: weights[name] for name in weights.files}
+        found[key] |= {name: fit[name] for name in ("status", "epochs", "train_nmse", "validation_nmse")}
+    return found
+
+
+def finishes_as_if_undisturbed(project, undisturbed) -> None:
+    """Run again: the same results, nothing left running, nothing half written, nothing more to do."""
+    project.run_well(*TARGETS)
+    np.testing.assert_equal(results_of(project), results_of(undisturbed))
+    client = MlflowClient(store_uri(None, project.results / "mlflow"))
+    experiment = client.get_experiment_by_name(BEAM)
+    assert client.search_runs([experiment.experiment_id], "attributes.status = 'RUNNING'") == []
+    finished = client.search_runs([experiment.experiment_id], "attributes.status = 'FINISHED'")
+    assert set(project.plan.runs) <= {run.data.tags.get(RUN_KEY) for run in finished}
+    assert [path for path in project.results.rglob(".*") if re.search(r"\.part$|\.\d+$", path.name)] == []
+    assert list(project.results.glob("runs/*/checkpoint*")) == []
+    assert "Nothing to be done" in project.run_well(*TARGETS)
+
+
+def test_a_killed_job(disturbed, undisturbed):
+    snakemake = disturbed.start(*TARGETS)
+    for process in wait_until_it_learns(disturbed):
+        os.kill(process, signal.SIGKILL)
+    assert snakemake.wait(120) != 0
+    finishes_as_if_undisturbed(disturbed, undisturbed)
+
+
+def test_a_killed_snakemake(disturbed, undisturbed):
+    """Its jobs live on for a while, and the next Snakemake asks to be unlocked."""
+    snakemake = disturbed.start(*TARGETS)
+    wait_until_it_learns(disturbed)
+    snakemake.kill()
+    snakemake.wait(120)
+    code, output = disturbed.run(*TARGETS)
+    assert code != 0
+    assert "--unlock" in output
+    disturbed.run_well("--unlock")
+    finishes_as_if_undisturbed(disturbed, undisturbed)
+
+
+def test_ctrl_c(disturbed, undisturbed):
+    snakemake = disturbed.start(*TARGETS)
+    wait_until_it_learns(disturbed)
+    os.killpg(snakemake.pid, signal.SIGINT)
+    assert snakemake.wait(120) != 0
+    eventually(lambda: training_processes(disturbed) == [])
+    finishes_as_if_undisturbed(disturbed, undisturbed)
+
+
+def test_a_job_told_to_stop_ends_its_run_at_once(disturbed):
+    """SIGTERM, as a cluster sends it: the run on the page is KILLED before anything runs again."""
+    snakemake = disturbed.start(*TARGETS)
+    for process in wait_until_it_learns(disturbed):
+        os.kill(process, signal.SIGTERM)
+    assert snakemake.wait(120) != 0
+    client = MlflowClient(store_uri(None, disturbed.results / "mlflow"))
+    experiment = client.get_experiment_by_name(BEAM)
+    running = client.search_runs([experiment.experiment_id], "attributes.status = 'RUNNING'")
+    assert [run for run in running if RUN_KEY in run.data.tags] == []

@@ -1,0 +1,140 @@
+"""The pages a person looks at, in a real browser: the report, and MLflow's page served on loopback."""
+
+import os
+import shutil
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import urllib.error
+import urllib.request
+
+import pytest
+from selenium import webdriver
+from selenium.webdriver.chrome.options import Options
+from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.common.by import By
+from selenium.webdriver.support.ui import WebDriverWait
+
+from flexsurr.training.tracking import store_uri
+
+BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+QUIET = (
+    "--headless=new",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-dev-shm-usage",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--no-first-run",
+    "--window-size=1400,1000",
+)
+PATIENCE_S = 60
+
+
+@pytest.fixture(scope="module")
+def browser():
+    """A headless Chromium with an empty profile, that keeps what pages print to their console."""
+    options = Options()
+    options.binary_location = next(filter(None, map(shutil.which, BROWSERS)))
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
+        for argument in (*QUIET, f"--user-data-dir={profile}"):
+            options.add_argument(argument)
+        driver = webdriver.Chrome(options=options, service=Service(shutil.which("chromedriver")))
+        yield driver
+        driver.quit()
+
+
+def complaints(browser) -> list[str]:
+    """Errors on the page's console."""
+    return [entry["message"] for entry in browser.get_log("browser") if entry["level"] == "SEVERE"]
+
+
+def text_of(browser) -> str:
+    return browser.find_element(By.TAG_NAME, "body").text
+
+
+def wait_for(browser, *words: str) -> None:
+    """Wait until the page shows all of `words`, whatever their case."""
+    WebDriverWait(browser, PATIENCE_S).until(
+        lambda driver: all(word.lower() in text_of(driver).lower() for word in words),
+        f"the page does not show {words}",
+    )
+
+
+def click(browser, word: str) -> None:
+    """Click the innermost thing that says `word`."""
+    found = browser.find_elements(By.XPATH, f"//*[normalize-space(text())='{word}']")
+    assert found, f"{word!r} is not on the page: {text_of(browser)}"
+    found[-1].click()
+
+
+def test_the_report_shows_figures_and_tables_by_study(quick, browser):
+    browser.get((quick.results / "report.html").as_uri())
+    wait_for(browser, "cantilever")
+    click(browser, "cantilever")
+    wait_for(browser, "figures", "tables")
+    click(browser, "figures")
+    wait_for(browser, "Free response", "Total energy", "Cost against accuracy")
+    click(browser, "tables") if "Natural frequencies" not in text_of(browser) else None
+    assert complaints(browser) == []
+
+
+@pytest.mark.parametrize("name", ["figure_03", "figure_10", "figure_13", "cost_accuracy", "training_loss"])
+def test_a_browser_draws_the_figures(quick, browser, name):
+    browser.get((quick.results / "figures" / "cantilever" / f"{name}.svg").as_uri())
+    box = browser.execute_script("const b = document.documentElement.getBBox(); return [b.width, b.height]")
+    assert min(box) > 50
+    assert complaints(browser) == []
+
+
+def test_the_cost_table_is_a_page(quick, browser):
+    browser.get((quick.results / "tables" / "cantilever" / "cost.html").as_uri())
+    assert len(browser.find_elements(By.CSS_SELECTOR, "tbody tr")) > 10
+    assert "gauss" in text_of(browser) or "dop853" in text_of(browser)
+    assert complaints(browser) == []
+
+
+@pytest.fixture(scope="module")
+def served(quick, tmp_path_factory):
+    """MLflow's page of the quick preset, on loopback until the tests of this file are done."""
+    folder = tmp_path_factory.mktemp("mlflow")
+    shutil.copytree(quick.results / "mlflow", folder, dirs_exist_ok=True)
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    address = f"http://127.0.0.1:{port}"
+    command = [sys.executable, "-m", "mlflow", "ui", "--host", "127.0.0.1", "--port", str(port)]
+    with (folder / "server.log").open("w") as output:
+        server = subprocess.Popen(
+            [*command, "--backend-store-uri", store_uri(None, folder), "--workers", "1"],
+            cwd=folder,
+            env=os.environ | {"MLFLOW_DISABLE_TELEMETRY": "true"},
+            stdout=output,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,
+        )
+    try:
+        for _ in range(int(PATIENCE_S / 0.2)):
+            try:
+                urllib.request.urlopen(f"{address}/health", timeout=5).close()
+                break
+            except (urllib.error.URLError, OSError):
+                assert server.poll() is None, (folder / "server.log").read_text()
+                time.sleep(0.2)
+        yield address
+    finally:
+        os.killpg(server.pid, 15)
+        server.wait(PATIENCE_S)
+
+
+def test_the_page_of_runs_shows_the_sweep_and_its_trials(quick, served, browser):
+    browser.get(served)
+    wait_for(browser, "cantilever")
+    browser.get(f"{served}/#/experiments/1/runs")
+    key = next(iter(quick.plan.runs))
+    wait_for(browser, "sweeps of cantilever")
+    assert key.split("-")[0] in text_of(browser)

@@ -1,0 +1,102 @@
+"""The quick preset from end to end: what it makes, and that making it again takes nothing."""
+
+import json
+import re
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from flexsurr.report import FIGURES, TABLES
+from flexsurr.storage import read_manifest, read_shards
+
+BEAM = "cantilever"
+
+TRAINING_COLUMNS = (
+    "study,variant,run_id,architecture,hidden,activation,optimiser,epochs,wall_s,train_nmse,validation_nmse"
+)
+COST_COLUMNS = (
+    "study,variant,response,model,implementation,integrator,simulations,wall_s_mean,wall_s_std,"
+    "relative_to_described_percent,relative_to_described_std_percent,relative_to_numpy_percent,"
+    "relative_to_compiled_percent,paper_percent,paper_std_percent,tip_error_percent,energy_drift_percent,"
+    "diverged"
+)
+STATIC_COLUMNS = "load_N,x_exact_m,z_exact_m,x_fom_m,z_fom_m,x_rom_m,z_rom_m"
+FREQUENCY_COLUMNS = "structure,mode,fom_rad_s,rom_rad_s,published_fom_rad_s,published_rom_rad_s"
+
+
+@pytest.mark.parametrize(
+    ("table", "columns"),
+    [
+        ("training", TRAINING_COLUMNS),
+        ("cost", COST_COLUMNS),
+        ("static_tip", STATIC_COLUMNS),
+        ("natural_frequencies", FREQUENCY_COLUMNS),
+    ],
+)
+def test_the_tables_have_the_columns_that_others_read(quick, table, columns):
+    frame = pd.read_csv(quick.results / "tables" / f"{table}.csv")
+    assert ",".join(frame.columns) == columns
+    assert len(frame) > 0
+
+
+def test_every_figure_and_table_is_there(quick):
+    for name in FIGURES:
+        svg = quick.results / "figures" / BEAM / f"{name}.svg"
+        assert svg.read_text(encoding="utf-8").rstrip().endswith("</svg>")
+        assert svg.with_suffix(".png").read_bytes().startswith(b"\x89PNG")
+    for name in TABLES:
+        assert (quick.results / "tables" / BEAM / f"{name}.html").is_file()
+    assert (quick.results / "report.html").stat().st_size > 100_000
+
+
+def test_the_dataset_is_whole_and_split_by_trajectory(quick):
+    for variant in ("hamiltonian", "as_printed"):
+        manifest = read_manifest(quick.results / "datasets" / BEAM / variant / "manifest.json")
+        assert sorted(manifest.train + manifest.validation) == list(range(6))
+        shards = list(read_shards(manifest))
+        assert [shard.metadata.first for shard in shards] == [0, 3]
+        assert all(shard.metadata.variant == variant for shard in shards)
+        assert manifest.failures == ()
+        q0 = np.concatenate([shard.x[np.isclose(shard.t, 0.0), 0] for shard in shards])
+        assert np.all(np.abs(q0) <= np.pi / 9 + 1e-12)
+        assert len(set(q0)) == 6
+
+
+def test_every_run_is_recorded_and_judged(quick):
+    runs = quick.plan.runs
+    assert {path.name for path in (quick.results / "runs").iterdir()} == set(runs)
+    for key, run in runs.items():
+        folder = quick.results / "runs" / key
+        metrics = json.loads((folder / "metrics.json").read_text())
+        assert (metrics["run_id"], metrics["variant"], metrics["status"]) == (key, run.variant, "finished")
+        assert metrics["validation_nmse"] < 1.0
+        assert "long_response_error_percent_worst" in metrics
+        parameters = json.loads((folder / "parameters.json").read_text())
+        assert parameters["trial"] == run.trial.model_dump(mode="json")
+
+
+def test_one_surrogate_of_each_architecture_is_selected(quick):
+    selected = json.loads((quick.results / "selected" / f"{BEAM}.json").read_text())
+    assert set(selected) == {"hamiltonian", "as_printed"}
+    for variant, chosen in selected.items():
+        assert {"hnn", "mlp", "polynomial"} <= set(chosen)
+        for name in ("hnn", "mlp", "polynomial"):
+            assert quick.plan.runs[chosen[name]["run_id"]].variant == variant
+
+
+def test_every_rule_leaves_a_log(quick):
+    logs = {path.relative_to(quick.results / "logs").parts[0] for path in quick.results.glob("logs/**/*.log")}
+    assert {"simulate", "manifest", "statics", "validation", "train", "select", "evaluate"} <= logs
+    assert {"responses", "figures", "tables", "tracking_store.log"} <= logs
+
+
+def test_nothing_half_written_is_left(quick):
+    assert [
+        path for path in quick.results.rglob("*") if re.fullmatch(r"\..*\.part|\..*\.\d+", path.name)
+    ] == []
+
+
+def test_making_it_again_takes_nothing(quick):
+    output = quick.run_well()
+    assert "Nothing to be done" in output
