@@ -75,7 +75,7 @@ def planar_loaded_rhs(kernel, t, x, dx, work):
         dx[r + k] += factor * force
 
 
-@implements_rhs(SpatialLoaded)
+@implements_rhs(SpatialLoaded, inline=False)
 def spatial_loaded_rhs(kernel, t, x, dx, work):
     """The model's right-hand side and the load's moments about the joints' axes."""
     rhs(kernel.model, t, x, dx, work)

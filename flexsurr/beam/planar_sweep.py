@@ -88,7 +88,7 @@ def planar_work_size(elements: int, coordinates: int) -> int:
     return 6 * padded_length(elements) + 2 * coordinates * elements + coordinates**2
 
 
-@implements_rhs(PlanarChain)
+@implements_rhs(PlanarChain, inline=False)
 def planar_chain_rhs(kernel, t, x, dx, work):
     """Eqs. 6, 7 and 10 in a plane."""
     r, padded = kernel.slopes.shape

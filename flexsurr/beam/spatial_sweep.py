@@ -171,7 +171,7 @@ def add_gyroscopic_forces(axes, offset, mass, rates, roots, masses, forces):
         forces[3 * n + i] += a[6] * k0 + a[7] * k1 + a[8] * k2
 
 
-@implements_rhs(SpatialChain)
+@implements_rhs(SpatialChain, inline=False)
 def spatial_chain_rhs(kernel, t, x, dx, work):
     """Eqs. 6, 7 and 10."""
     r = kernel.modes.shape[0]

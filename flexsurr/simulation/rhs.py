@@ -70,15 +70,20 @@ def rhs(kernel: Any, t: float, x: Array, dx: Array, work: Array) -> None:
     raise TypeError(f"no equations are registered for {type(kernel).__name__}; call rhs from compiled code")
 
 
-def implements_rhs(kernel_class: type) -> Callable[[Callable[..., None]], Callable[..., None]]:
+def implements_rhs(
+    kernel_class: type, inline: bool = True
+) -> Callable[[Callable[..., None]], Callable[..., None]]:
     """Register the decorated function (kernel, t, x, dx, work) -> None as `rhs` of `kernel_class`.
 
     Its arguments must carry these names. Write loops over states, not slices: assigning a slice costs
-    seconds of compilation.
+    seconds of compilation. Equations must not allocate: they are compiled without numba's reference
+    counts, whose atomic operations cost as much as a small kernel. `inline` puts them into every stage of
+    an integrator; long equations are better called, for a dozen copies take long to compile.
     """
+    options = {"fastmath": FLOATING_POINT, "error_model": "numpy", "_nrt": False, "forceinline": inline}
 
     def register(equations: Callable[..., None]) -> Callable[..., None]:
-        @overload(rhs, jit_options={"fastmath": FLOATING_POINT, "error_model": "numpy"})
+        @overload(rhs, jit_options=options)
         def resolve(kernel, t, x, dx, work):
             if isinstance(kernel, types.BaseNamedTuple) and kernel.instance_class is kernel_class:
                 return equations
