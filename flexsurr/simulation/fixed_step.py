@@ -64,6 +64,9 @@ def run_fixed_step(method, kernel, t, x, longest_step, work):
     # Allocated here and with a constant width, rows are known not to overlap: twice as fast.
     d = states(method.constant, x[0])
     scratch = np.empty((method.rows, d))
+    for s in range(method.rows):
+        for i in range(d):
+            scratch[s, i] = np.nan  # tells a method that carries something over that there is nothing yet
     state = np.empty(d)
     for i in range(d):
         state[i] = x[0, i]
