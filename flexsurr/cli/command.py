@@ -33,6 +33,8 @@ def command(
     that whatever is open is closed.
     """
     signal.signal(signal.SIGTERM, _terminate)
+    # A shell that starts something in the background has it ignore SIGINT; Ctrl-C must reach us all the same.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     logging.basicConfig(
         level=logging.INFO, stream=sys.stderr, format="%(asctime)s %(message)s", datefmt="%H:%M:%S"
     )

@@ -23,7 +23,7 @@ def main(job: Job, output: Path) -> None:
     basis = reduce(Structure.model_validate(job["structure"]), study.reduction)
     model = reduced_order(basis, job["variant"], "compiled")
     states = draw_initial_conditions(basis, dataset.initial_conditions, study.seed, first, count)
-    times = np.arange(round(dataset.duration_s / dataset.step_s) + 1) * dataset.step_s
+    times = dataset.step_s * np.arange(round(dataset.duration_s / dataset.step_s) + 1, dtype=np.float64)
     numbers, t, x, dx, failures = [], [], [], [], []
     for number, x0 in zip(range(first, first + count), states, strict=True):
         trajectory = simulate(model, times, x0, dataset.integrator)

@@ -9,15 +9,17 @@ import tempfile
 import time
 import urllib.error
 import urllib.request
+from dataclasses import dataclass
 
 import pytest
+from mlflow import MlflowClient
 from selenium import webdriver
 from selenium.webdriver.chrome.options import Options
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.by import By
 from selenium.webdriver.support.ui import WebDriverWait
 
-from flexsurr.training.tracking import store_uri
+from flexsurr.training.tracking import RUN_KEY, store_uri
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 QUIET = (
@@ -31,7 +33,7 @@ QUIET = (
     "--no-first-run",
     "--window-size=1400,1000",
 )
-PATIENCE_S = 60
+PATIENCE_S = 120
 
 
 @pytest.fixture(scope="module")
@@ -98,6 +100,15 @@ def test_the_cost_table_is_a_page(quick, browser):
     assert complaints(browser) == []
 
 
+@dataclass(frozen=True)
+class Served:
+    """A server's address, the experiment's number there, and the pages of its runs by run_id."""
+
+    address: str
+    experiment: str
+    pages: dict[str, str]
+
+
 @pytest.fixture(scope="module")
 def served(quick, tmp_path_factory):
     """MLflow's page of the quick preset, on loopback until the tests of this file are done."""
@@ -107,6 +118,10 @@ def served(quick, tmp_path_factory):
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
     address = f"http://127.0.0.1:{port}"
+    client = MlflowClient(store_uri(None, folder))
+    experiment = client.get_experiment_by_name("cantilever").experiment_id
+    tagged = [(run.data.tags.get(RUN_KEY), run.info.run_id) for run in client.search_runs([experiment])]
+    pages = {key: page for key, page in tagged if key}
     command = [sys.executable, "-m", "mlflow", "ui", "--host", "127.0.0.1", "--port", str(port)]
     with (folder / "server.log").open("w") as output:
         server = subprocess.Popen(
@@ -125,16 +140,22 @@ def served(quick, tmp_path_factory):
             except (urllib.error.URLError, OSError):
                 assert server.poll() is None, (folder / "server.log").read_text()
                 time.sleep(0.2)
-        yield address
+        yield Served(address, experiment, pages)
     finally:
         os.killpg(server.pid, 15)
         server.wait(PATIENCE_S)
 
 
-def test_the_page_of_runs_shows_the_sweep_and_its_trials(quick, served, browser):
-    browser.get(served)
-    wait_for(browser, "cantilever")
-    browser.get(f"{served}/#/experiments/1/runs")
-    key = next(iter(quick.plan.runs))
-    wait_for(browser, "sweeps of cantilever")
-    assert key.split("-")[0] in text_of(browser)
+def test_the_page_shows_the_sweep_and_its_trials(quick, served, browser):
+    runs = quick.plan.runs
+    browser.get(f"{served.address}/#/experiments/{served.experiment}/runs")
+    # the parent, with its trials folded away below it
+    wait_for(browser, "sweeps of cantilever", f"{len(runs) + 1} matching runs")
+    assert complaints(browser) == []
+
+
+def test_the_page_of_a_trial_shows_parameters_and_figures(quick, served, browser):
+    key, page = next(iter(served.pages.items()))
+    browser.get(f"{served.address}/#/experiments/{served.experiment}/runs/{page}")
+    wait_for(browser, key, "validation_nmse", "architecture", "dataset_sha256", "sweeps of cantilever")
+    assert complaints(browser) == []

@@ -1,0 +1,107 @@
+"""How commands end: well, with one line for what was to be expected, with a traceback for what was not."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from flexsurr.config.settings import load
+from flexsurr.storage import read_shard
+from flexsurr.workflow.plan import Plan
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+PLAN = Plan(load(REPOSITORY, ["config/config.yaml", "config/presets/quick.yaml"]))
+SLEEPER = """
+import time
+from flexsurr.cli.command import command
+
+def main(job):
+    print("at work", flush=True)
+    try:
+        time.sleep(60)
+    finally:
+        print("closed", flush=True)
+
+command(main, {})
+"""
+
+
+def run(command: str, *arguments: str) -> subprocess.CompletedProcess:
+    return subprocess.run(
+        [sys.executable, "-m", f"flexsurr.cli.{command}", *arguments],
+        cwd=REPOSITORY,
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+
+
+def test_a_shard_depends_on_its_number_alone(tmp_path):
+    """The second shard is the same whether or not there is a first, and however it is asked for."""
+    job = json.dumps(PLAN.simulate("cantilever", "hamiltonian", 1))
+    asked = tmp_path / "job.json"
+    asked.write_text(job)
+    paths = [tmp_path / "a.parquet", tmp_path / "b.parquet"]
+    for path, argument in zip(paths, (job, f"@{asked}"), strict=True):
+        done = run("simulate", "--job", argument, "--output", str(path))
+        assert done.returncode == 0, done.stderr
+    assert paths[0].read_bytes() == paths[1].read_bytes()
+    shard = read_shard(paths[0])
+    assert (shard.metadata.first, shard.metadata.count) == (3, 3)
+    assert shard.metadata.seed == PLAN.studies["cantilever"].study.seed
+
+
+def test_what_is_to_be_expected_is_one_line(tmp_path):
+    rubbish = tmp_path / "shard-0000.parquet"
+    rubbish.write_bytes(b"rubbish")
+    job = json.dumps(PLAN.manifest("cantilever", "hamiltonian"))
+    done = run(
+        "manifest", "--job", job, "--shards", str(rubbish), "--output", str(tmp_path / "manifest.json")
+    )
+    assert done.returncode == 1
+    assert done.stderr.startswith(f"flexsurr.cli.manifest: {rubbish}: damaged or truncated")
+    assert len(done.stderr.splitlines()) == 1
+    assert not (tmp_path / "manifest.json").exists()
+
+
+def test_what_is_not_to_be_expected_leaves_its_traceback(tmp_path):
+    done = run("manifest", "--job", "{}", "--shards", "x", "--output", str(tmp_path / "manifest.json"))
+    assert done.returncode == 1
+    assert "Traceback" in done.stderr
+    assert "TypeError" in done.stderr
+
+
+@pytest.mark.parametrize("job", ["{", "[]", "@absent.json"])
+def test_what_is_no_job_is_refused(job):
+    done = run("manifest", "--job", job, "--shards", "x", "--output", "y")
+    assert done.returncode == 2
+    assert "is no job" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize(("sent", "code"), [(signal.SIGTERM, 143), (signal.SIGINT, 130)])
+def test_a_command_told_to_stop_closes_what_is_open(sent, code):
+    with subprocess.Popen(
+        [sys.executable, "-c", SLEEPER, "--job", "{}"],
+        cwd=REPOSITORY,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as process:
+        assert process.stdout.readline() == "at work\n"
+        os.kill(process.pid, sent)
+        output, errors = process.communicate(timeout=60)
+    assert output == "closed\n"
+    assert process.returncode == code
+    assert "Traceback" not in errors
+
+
+def test_simulating_needs_neither_torch_nor_mlflow_nor_matplotlib():
+    heavy = {"torch", "mlflow", "matplotlib", "pandas"}
+    code = f"import sys, flexsurr.cli.simulate; print({heavy} & set(sys.modules))"
+    done = subprocess.run([sys.executable, "-c", code], cwd=REPOSITORY, capture_output=True, text=True)
+    assert done.stdout.strip() == "set()", done.stderr
