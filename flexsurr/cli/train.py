@@ -26,8 +26,7 @@ PROGRESS_EVERY_S = 5.0
 def main(job: Job, manifest: Path, store: Path, folder: Path) -> None:
     """Write parameters.json, fit.json, history.parquet and weights.npz of the run into `folder`.
 
-    A trial that diverges ends well, with status "failed", its reason, and an empty weights.npz where
-    it has no weights to keep.
+    A trial that diverges ends well, with status "failed", its reason, and the best weights it met.
     """
     with _alone_in(folder):
         _train(job, manifest, store, folder)
@@ -75,7 +74,7 @@ def _train(job: Job, manifest: Path, store: Path, folder: Path) -> None:
         result = fit(trial, dataset, folder, report=report)
         figures = _figures(job, trial, result, dataset.sha256)
         page.status, page.reason = result.status, result.reason
-        _write_weights(folder / "weights.npz", result)
+        save(result.surrogate, folder / "weights.npz")
         with replacing(folder / "history.parquet") as beside:
             result.history.to_parquet(beside, index=False)
         write_json(folder / "fit.json", figures)
@@ -107,14 +106,6 @@ def _figures(job: Job, trial: Trial, result: Fit, dataset_sha256: str) -> dict[s
         "validation_nmse": _finite(result.validation_nmse),
         "dataset_sha256": dataset_sha256,
     }
-
-
-def _write_weights(path: Path, result: Fit) -> None:
-    if result.status == "finished":
-        save(result.surrogate, path)
-    else:
-        with replacing(path) as beside:
-            beside.touch()
 
 
 def _finite(value: float) -> float | None:

@@ -35,7 +35,7 @@ def part_of(record_class: type[RecordT], values: Mapping[str, Any]) -> RecordT:
     """
     fields: dict[str, Any] = {}
     for name, value in values.items():
-        annotation = record_class.model_fields[name].annotation
+        annotation: Any = record_class.model_fields[name].annotation
         if isinstance(annotation, type) and issubclass(annotation, BaseModel):
             fields[name] = part_of(annotation, value)
         else:

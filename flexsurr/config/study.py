@@ -112,6 +112,7 @@ class EvaluationSettings(Record):
     output_step_s: Positive = 0.01
     repeats: Count = 5
     long_responses: Count = 5
+    validation_duration_s: Positive = 1.0
     force: TipForce = TipForce()
     integrators: tuple[Integrator, ...] = (
         Integrator(method="dop853_fixed", step_s=0.01),

@@ -10,7 +10,6 @@ from flexsurr.simulation import simulate
 
 VALIDATION_COLUMNS = ("variant", "model", "t_s", "tip_x_m", "tip_z_m")
 
-DURATION_S = 1.0
 STEP_S = 1e-3
 
 # The lumps at mid-element put frequencies into the full-order model far above anything seen in its
@@ -19,14 +18,15 @@ INTEGRATOR = Integrator(method="radau_iia_5", rtol=1e-8, atol=1e-10)
 
 
 def validation_table(study: Study, basis: ModalBasis) -> pd.DataFrame:
-    """From rest under the study's tip force for one second; columns `VALIDATION_COLUMNS`, tip in [m].
+    """From rest under the study's tip force for `validation_duration_s`; columns `VALIDATION_COLUMNS`, tip in [m].
 
     One block of rows for each of the study's variants and each model, "fom" and "rom". A trajectory
     that ends early ends its rows.
     """
     structure = basis.structure
-    t = np.linspace(0.0, DURATION_S, round(DURATION_S / STEP_S) + 1)
-    force = tip_force(study.evaluation.force, DURATION_S)
+    duration_s = study.evaluation.validation_duration_s
+    t = np.linspace(0.0, duration_s, round(duration_s / STEP_S) + 1)
+    force = tip_force(study.evaluation.force, duration_s)
     equilibrium = find_equilibrium(structure)
     rest = np.concatenate([equilibrium, np.zeros_like(equilibrium)])
     frames = []

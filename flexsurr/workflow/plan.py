@@ -41,7 +41,7 @@ SELECTION = (
     "evaluation.long_responses",
 )
 STATICS = ("reduction", "statics")
-VALIDATION = ("reduction", "variants", "evaluation.force")
+VALIDATION = ("reduction", "variants", "evaluation.force", "evaluation.validation_duration_s")
 RESPONSES = (
     "seed",
     "reduction",
@@ -76,7 +76,7 @@ class Plan:
     def runs(self) -> dict[str, Run]:
         """Training runs by their run_id."""
         return {
-            run_id(name, variant, trial): Run(name, variant, trial)
+            run_id(trial, name, variant): Run(name, variant, trial)
             for name, study in self.studies.items()
             for variant in study.study.variants
             for trials in self._trials[name].values()
@@ -137,7 +137,7 @@ class Plan:
         """The judgement of all runs of a study; `sweeps` maps sweep and variant to run_ids."""
         variants = self.variants(study)
         sweeps = {
-            sweep: {variant: [run_id(study, variant, trial) for trial in trials] for variant in variants}
+            sweep: {variant: [run_id(trial, study, variant) for trial in trials] for variant in variants}
             for sweep, trials in self._trials[study].items()
         }
         return {**self._part(study, SELECTION), "study": study, "sweeps": sweeps}

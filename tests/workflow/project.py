@@ -35,7 +35,7 @@ class Project:
 
     @property
     def command(self) -> list[str]:
-        return [sys.executable, "-m", "snakemake", "--cores", "2", "--configfile", CONFIGURATION[1]]
+        return [sys.executable, "-m", "snakemake", "--configfile", CONFIGURATION[1], "--cores", "2"]
 
     def start(self, *options: str) -> subprocess.Popen:
         """Snakemake in a session of its own, as a terminal would run it; its output goes to a file."""
