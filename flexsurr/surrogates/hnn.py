@@ -22,10 +22,10 @@ class HNN(Network):
 
     architecture: ClassVar[str] = "hnn"
 
-    @property
-    def readout_shapes(self) -> tuple[tuple[int, ...], ...]:
+    @classmethod
+    def readout_shapes(cls, states: int, neurons: int) -> list[tuple[int, ...]]:
         """The vector c."""
-        return ((self.hidden[-1],),)
+        return [(neurons,)]
 
     def _hidden_layers(self, x: Array) -> tuple[Array, list[Array]]:
         """Arguments of the last layer's σ, and the slopes σ′ of the layers before it."""
@@ -107,7 +107,7 @@ class HNNKernel(NamedTuple):
     parameters: Array
 
 
-@implements_rhs(HNNKernel)
+@implements_rhs(HNNKernel, inline=False)
 def _hnn(kernel, t, x, dx, work):
     activation, widths, parameters = kernel
     last = len(widths) - 1

@@ -17,11 +17,10 @@ class MLP(Network):
 
     architecture: ClassVar[str] = "mlp"
 
-    @property
-    def readout_shapes(self) -> tuple[tuple[int, ...], ...]:
+    @classmethod
+    def readout_shapes(cls, states: int, neurons: int) -> list[tuple[int, ...]]:
         """Weights and biases of the outputs."""
-        count = len(self.state_names)
-        return ((self.hidden[-1], count), (count,))
+        return [(neurons, states), (states,)]
 
     def scaled_field(self, x: Array) -> Array:
         """The network."""
@@ -78,7 +77,7 @@ class MLPKernel(NamedTuple):
     parameters: Array
 
 
-@implements_rhs(MLPKernel)
+@implements_rhs(MLPKernel, inline=False)
 def _mlp(kernel, t, x, dx, work):
     activation, widths, parameters = kernel
     # work: the inputs, then each layer's values, then the outputs

@@ -1,5 +1,7 @@
 """Fully connected networks: their widths, their activation and where each weight lies in the vector."""
 
+import math
+from abc import abstractmethod
 from dataclasses import dataclass
 from typing import Any
 
@@ -36,21 +38,21 @@ class Network(Surrogate):
         """Number of states, then the neurons of each hidden layer."""
         return (len(self.state_names), *self.hidden)
 
-    @property
-    def shapes(self) -> tuple[tuple[int, ...], ...]:
+    @classmethod
+    def shapes(cls, states: int, hidden: tuple[int, ...]) -> list[tuple[int, ...]]:
         """Shapes of the arrays in `parameters`, in their order."""
-        layers = zip(self.widths, self.hidden, strict=False)
-        return tuple(shape for n, m in layers for shape in ((n, m), (m,))) + self.readout_shapes
+        layers = zip((states, *hidden), hidden, strict=False)
+        return [shape for n, m in layers for shape in ((n, m), (m,))] + cls.readout_shapes(states, hidden[-1])
 
-    @property
-    def readout_shapes(self) -> tuple[tuple[int, ...], ...]:
-        """Shapes of the arrays that read the last hidden layer out."""
-        raise NotImplementedError
+    @classmethod
+    @abstractmethod
+    def readout_shapes(cls, states: int, neurons: int) -> list[tuple[int, ...]]:
+        """Shapes of the arrays that read a last hidden layer of `neurons` out."""
 
     @property
     def parameter_count(self) -> int:
         """Weights and biases of all layers."""
-        return sum(int(np.prod(shape)) for shape in self.shapes)
+        return sum(map(math.prod, self.shapes(len(self.state_names), self.hidden)))
 
     @property
     def sigma(self) -> ActivationFunction:
@@ -59,9 +61,9 @@ class Network(Surrogate):
 
     def arrays(self) -> list[Array]:
         """Views of the parameters in their shapes."""
-        ends = np.cumsum([int(np.prod(shape)) for shape in self.shapes])
-        pieces = np.split(self.parameters, ends[:-1])
-        return [piece.reshape(shape) for piece, shape in zip(pieces, self.shapes, strict=True)]
+        shapes = self.shapes(len(self.state_names), self.hidden)
+        pieces = np.split(self.parameters, np.cumsum([math.prod(shape) for shape in shapes[:-1]]))
+        return [piece.reshape(shape) for piece, shape in zip(pieces, shapes, strict=True)]
 
     def settings(self) -> dict[str, Any]:
         """Hidden layers and activation."""

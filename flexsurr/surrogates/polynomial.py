@@ -122,7 +122,7 @@ class PolynomialKernel(NamedTuple):
     coefficients: Array
 
 
-@implements_rhs(PolynomialKernel)
+@implements_rhs(PolynomialKernel, inline=False)
 def _polynomial(kernel, t, x, dx, work):
     parents, variables, coefficients = kernel
     work[0] = 1.0

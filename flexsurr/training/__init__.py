@@ -1,0 +1,34 @@
+"""From datasets to fitted surrogates: optimisers, sweeps, selection."""
+
+from typing import TYPE_CHECKING, Any
+
+from flexsurr.training.dataset import Dataset, load_dataset, split_dataset
+from flexsurr.training.fit import Fit, fit
+from flexsurr.training.losses import nmse
+from flexsurr.training.select import select
+from flexsurr.training.sweep import expand, run_id
+
+if TYPE_CHECKING:
+    from flexsurr.training.networks import torch_model
+
+__all__ = [
+    "Dataset",
+    "Fit",
+    "expand",
+    "fit",
+    "load_dataset",
+    "nmse",
+    "run_id",
+    "select",
+    "split_dataset",
+    "torch_model",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """`torch_model` when it is asked for: importing torch takes seconds that nothing else here needs."""
+    if name != "torch_model":
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from flexsurr.training.networks import torch_model
+
+    return torch_model

@@ -1,0 +1,176 @@
+"""One trial on one dataset, from random weights to the best ones, whichever the optimiser."""
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+import pandas as pd
+
+from flexsurr.config.sweep import Trial
+from flexsurr.surrogates import HNN, MLP, Network, Surrogate, canonical_scaling
+from flexsurr.training.checkpoint import read_checkpoint, remove_checkpoint, write_checkpoint
+from flexsurr.training.dataset import Dataset
+from flexsurr.training.initialisation import initial_parameters
+from flexsurr.training.least_squares import fit_polynomial
+from flexsurr.training.losses import nmse
+from flexsurr.training.objective import Objective
+from flexsurr.training.optimiser import Optimiser
+from flexsurr.training.progress import Progress
+
+CHECKPOINT_EVERY_S = 5.0
+NETWORKS: dict[str, type[Network]] = {"hnn": HNN, "mlp": MLP}
+FIRST_ORDER = ("adam", "adam_cosine")
+
+Report = Callable[[int, float, float, float], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """What a trial came to. Losses are the nmse; `epochs` were done, and the weights are of `best_epoch`.
+
+    A failed fit holds the best weights it met: at epoch 0, the random ones it began with.
+    """
+
+    surrogate: Surrogate
+    status: Literal["finished", "failed"]
+    reason: str
+    epochs: int
+    best_epoch: int
+    wall_s: float
+    train_nmse: float
+    validation_nmse: float
+    parameters: int
+    history: pd.DataFrame
+
+
+def fit(trial: Trial, dataset: Dataset, folder: str | Path, report: Report | None = None) -> Fit:
+    """Fit a surrogate to `dataset`, resuming from the checkpoint of the same trial and dataset in `folder`.
+
+    Ends after the trial's epochs, when validation has not improved for `patience` of them, after
+    `time_limit_s`, or when the optimiser has nothing left to do, and keeps the weights that validated
+    best. `report(epoch, train_loss, validation_loss, wall_s)` is called after each epoch. A loss that is
+    not finite ends the fit as failed, and a fit of which no epoch validates better than its start has
+    failed too. Interrupted and resumed, the weights are those of an uninterrupted run (unless the time
+    limit ends it).
+    """
+    folder = Path(folder)
+    if trial.architecture == "polynomial":
+        return _fit_polynomial(trial, dataset, report)
+    network = _untrained(trial, dataset)
+    training = Objective.of(network, dataset.x_train, dataset.dx_train)
+    validation = Objective.of(network, dataset.x_validation, dataset.dx_validation)
+    optimiser = _optimiser(trial, training)
+    belongs_to = {"trial": trial.model_dump(mode="json"), "dataset": dataset.sha256}
+    progress = Progress(validation.loss(network.parameters), network.parameters)
+    state = read_checkpoint(folder, belongs_to)
+    if state is not None:
+        progress = Progress.restored(state)
+        optimiser.restore(state)
+    # the clock of this process, set forward by what an earlier one has spent
+    start = time.perf_counter() - progress.wall_s
+    saved = time.perf_counter()
+    reason = ""
+    while not (reason or _at_end(trial, progress, optimiser)):
+        train_loss = optimiser.epoch()
+        validation_loss = validation.loss(optimiser.parameters.astype(np.float64))
+        wall_s = time.perf_counter() - start
+        if not (math.isfinite(train_loss) and math.isfinite(validation_loss)):
+            reason = f"the loss is not finite after epoch {progress.epoch + 1}"
+        progress.add(wall_s, train_loss, validation_loss, optimiser.parameters)
+        if report is not None:
+            report(progress.epoch, train_loss, validation_loss, wall_s)
+        if not reason and time.perf_counter() - saved > CHECKPOINT_EVERY_S:
+            write_checkpoint(folder, belongs_to, progress.state() | optimiser.state())
+            saved = time.perf_counter()
+    if not reason and progress.best_epoch == 0:
+        reason = f"none of {progress.epoch} epochs validated better than the weights it began with"
+    network = replace(network, parameters=progress.best_parameters)
+    remove_checkpoint(folder)
+    return Fit(
+        surrogate=network,
+        status="failed" if reason else "finished",
+        reason=reason,
+        epochs=progress.epoch,
+        best_epoch=progress.best_epoch,
+        wall_s=progress.wall_s,
+        train_nmse=training.loss(network.parameters),
+        validation_nmse=validation.loss(network.parameters),
+        parameters=network.parameter_count,
+        history=progress.history(),
+    )
+
+
+def _at_end(trial: Trial, progress: Progress, optimiser: Optimiser) -> bool:
+    stalled = trial.patience is not None and progress.epoch - progress.best_epoch >= trial.patience
+    late = trial.time_limit_s is not None and progress.wall_s >= trial.time_limit_s
+    return bool(progress.epoch >= trial.epochs or stalled or late or optimiser.finished)
+
+
+def _untrained(trial: Trial, dataset: Dataset) -> Network:
+    assert trial.activation is not None  # a Trial of a network has one
+    form = NETWORKS[trial.architecture]
+    spread: Literal["torch", "wide"] = "torch" if trial.optimiser in FIRST_ORDER else "wide"
+    return form(
+        parameters=initial_parameters(form, len(dataset.state_names), trial.hidden, spread, trial.seed),
+        scaling=canonical_scaling(dataset.x_train, dataset.dx_train),
+        state_names=dataset.state_names,
+        state_units=dataset.state_units,
+        hidden=trial.hidden,
+        activation=trial.activation,
+    )
+
+
+def _optimiser(trial: Trial, objective: Objective) -> Optimiser:
+    parameters = objective.network.parameters
+    if trial.optimiser == "levenberg_marquardt":
+        from flexsurr.training.levenberg_marquardt import LevenbergMarquardt
+
+        return LevenbergMarquardt(objective, parameters)
+    if trial.optimiser == "lbfgs":
+        from flexsurr.training.lbfgs import LBFGS  # here, for it imports torch
+
+        return LBFGS(objective, parameters)
+    from flexsurr.training.adam import Adam
+
+    assert trial.learning_rate is not None  # a Trial with Adam has both
+    assert trial.batch_size is not None
+    return Adam(
+        objective,
+        parameters,
+        learning_rate=trial.learning_rate,
+        batch_size=trial.batch_size,
+        epochs=trial.epochs,
+        cosine=trial.optimiser == "adam_cosine",
+        precision=trial.precision,
+        seed=trial.seed,
+    )
+
+
+def _fit_polynomial(trial: Trial, dataset: Dataset, report: Report | None) -> Fit:
+    assert trial.degree is not None  # a Trial of a polynomial has one
+    start = time.perf_counter()
+    polynomial = fit_polynomial(dataset, trial.degree)
+    losses = (
+        nmse(polynomial.derivative(0.0, dataset.x_train), dataset.dx_train),
+        nmse(polynomial.derivative(0.0, dataset.x_validation), dataset.dx_validation),
+    )
+    progress = Progress(math.inf, polynomial.parameters)
+    progress.add(time.perf_counter() - start, *losses, polynomial.parameters)
+    if report is not None:
+        report(1, *losses, progress.wall_s)
+    return Fit(
+        surrogate=polynomial,
+        status="finished",
+        reason="",
+        epochs=1,
+        best_epoch=1,
+        wall_s=progress.wall_s,
+        train_nmse=losses[0],
+        validation_nmse=losses[1],
+        parameters=polynomial.parameter_count,
+        history=progress.history(),
+    )

@@ -1,0 +1,91 @@
+"""Levenberg–Marquardt: damped Gauss–Newton steps on a sum of squares, in double precision.
+
+The damping μ follows the gain ratio (H. B. Nielsen, *Damping parameter in Marquardt's method*,
+IMM-REP-1999-05, eq. 2.11); it is scaled by the largest diagonal of JᵀJ met so far (Moré 1978), so that
+the steps don't depend on the units of single weights. A step that does not lessen the loss is repeated
+with more damping from the same JᵀJ.
+"""
+
+from typing import Protocol
+
+import numpy as np
+from scipy.linalg import LinAlgError, cho_factor, cho_solve
+
+from flexsurr.simulation.rhs import Array
+from flexsurr.training.objective import NormalEquations
+
+INITIAL_DAMPING = 1e-2
+LARGEST_DAMPING = 1e12
+SMALLEST_DAMPING = 1e-15
+
+
+class SumOfSquares(Protocol):
+    """What Levenberg–Marquardt minimises."""
+
+    def loss(self, parameters: Array) -> float:
+        """The sum of squares."""
+        ...
+
+    def normal_equations(self, parameters: Array) -> NormalEquations:
+        """JᵀJ, Jᵀr and the sum of squares."""
+        ...
+
+
+class LevenbergMarquardt:
+    """One call of `epoch` is one accepted step. Satisfies `Optimiser`."""
+
+    def __init__(self, objective: SumOfSquares, parameters: Array) -> None:
+        self.parameters = parameters.copy()
+        self.finished = ""
+        self._objective = objective
+        self._damping = INITIAL_DAMPING
+        self._growth = 2.0
+        self._equations = objective.normal_equations(parameters)
+        self._largest = self._equations.gram.diagonal()
+
+    def epoch(self) -> float:
+        """Take one step that lessens the loss; the loss after it. `finished` says when there is none."""
+        loss, gram, gradient = self._equations
+        while self._damping < LARGEST_DAMPING:
+            damping = self._damping * self._largest
+            step = _solve(gram, damping, gradient)
+            if step is not None:
+                predicted = float(step @ (damping * step - gradient))
+                gain = (loss - self._objective.loss(self.parameters + step)) / predicted
+                if gain > 0.0:
+                    self.parameters = self.parameters + step
+                    self._damping *= max(1.0 / 3.0, 1.0 - (2.0 * min(gain, 1.0) - 1.0) ** 3)
+                    self._damping = max(self._damping, SMALLEST_DAMPING)
+                    self._growth = 2.0
+                    self._equations = self._objective.normal_equations(self.parameters)
+                    self._largest = np.maximum(self._largest, self._equations.gram.diagonal())
+                    return self._equations.loss
+            self._damping *= self._growth
+            self._growth *= 2.0
+        self.finished = "no step lessens the loss"
+        return loss
+
+    def state(self) -> dict[str, Array]:
+        """Everything that the next epoch depends on."""
+        return {
+            "parameters": self.parameters,
+            "damping": np.array([self._damping, self._growth]),
+            "largest": self._largest,
+        }
+
+    def restore(self, state: dict[str, Array]) -> None:
+        """Go on from a `state`."""
+        self.parameters = state["parameters"].copy()
+        self._damping, self._growth = state["damping"].tolist()
+        self._largest = state["largest"].copy()
+        self._equations = self._objective.normal_equations(self.parameters)
+
+
+def _solve(gram: Array, damping: Array, gradient: Array) -> Array | None:
+    """−(JᵀJ + diag(damping))⁻¹ Jᵀr, or None where rounding leaves no positive definite matrix."""
+    damped = gram.copy()
+    damped.flat[:: len(gram) + 1] += np.where(damping > 0.0, damping, 1.0)
+    try:
+        return -cho_solve(cho_factor(damped, overwrite_a=True, check_finite=False), gradient)
+    except LinAlgError:
+        return None

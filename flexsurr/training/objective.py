@@ -1,0 +1,90 @@
+"""The training loss of a network as a function of its weights, with its derivatives."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexsurr.simulation.rhs import Array
+from flexsurr.surrogates import HNN, Network
+from flexsurr.surrogates.hnn import HNNKernel
+from flexsurr.surrogates.mlp import MLPKernel
+from flexsurr.training.backpropagation import workspace
+from flexsurr.training.batches import fields, loss_and_gradient, residuals_and_jacobian
+from flexsurr.training.losses import output_weights
+
+CHUNK = 1 << 20  # elements of the Jacobian that exist at a time: 8 MB
+
+
+class NormalEquations(NamedTuple):
+    """JᵀJ (n, n) and Jᵀr (n,) of residuals r whose sum of squares is the loss."""
+
+    loss: float
+    gram: Array
+    gradient: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Objective:
+    """The nmse of `network`, with any weights, at scaled states `x` and scaled derivatives `y` (m, 2r)."""
+
+    network: Network
+    x: Array
+    y: Array
+
+    @classmethod
+    def of(cls, network: Network, x: Array, dx: Array) -> "Objective":
+        """The objective for states `x` and derivatives `dx` (m, 2r), both in their units."""
+        count = x.shape[1]
+        return cls(network, x / network.scaling.states(count), dx / network.scaling.rates(count))
+
+    @cached_property
+    def output_weights(self) -> Array:
+        """Weights (2r,) of the outputs' mean squared errors, in the precision of the samples."""
+        return output_weights(self.y).astype(self.y.dtype)
+
+    @cached_property
+    def everything(self) -> NDArray[np.int64]:
+        """The indices of all samples."""
+        return np.arange(len(self.x))
+
+    @cached_property
+    def workspace(self) -> Array:
+        """Scratch for one sample, in the precision of the samples."""
+        return workspace(self.network.widths).astype(self.x.dtype)
+
+    def kernel(self, parameters: Array) -> HNNKernel | MLPKernel:
+        """The network with these weights, for compiled code; the array is shared, not copied."""
+        form = HNNKernel if isinstance(self.network, HNN) else MLPKernel
+        return form(self.network.sigma.tag, self.network.widths, parameters)
+
+    def loss(self, parameters: Array) -> float:
+        """The nmse over all samples; not finite where a weight or the field is not."""
+        error = fields(self.kernel(parameters), self.x, self.workspace) - self.y
+        return float(np.einsum("si,si,i->", error, error, self.output_weights) / len(error))
+
+    def gradient(self, parameters: Array, gradient: Array, samples: NDArray[np.int64] | None = None) -> float:
+        """The loss over all `samples` (indices; by default everything), its gradient into `gradient` (n,)."""
+        chosen = self.everything if samples is None else samples
+        return loss_and_gradient(
+            self.kernel(parameters), self.x, self.y, self.output_weights, chosen, gradient, self.workspace
+        )
+
+    def normal_equations(self, parameters: Array) -> NormalEquations:
+        """JᵀJ and Jᵀr, accumulated over pieces of the Jacobian: memory is bounded by `CHUNK`."""
+        kernel = self.kernel(parameters)
+        d, n = self.x.shape[1], parameters.size
+        roots = np.sqrt(self.output_weights / len(self.x))
+        step = max(CHUNK // (n * d), 1)
+        jacobian, residuals = np.empty((step * d, n)), np.empty(step * d)
+        loss, gram, gradient = 0.0, np.zeros((n, n)), np.zeros(n)
+        for first in range(0, len(self.x), step):
+            x, y = self.x[first : first + step], self.y[first : first + step]
+            residuals_and_jacobian(kernel, x, y, roots, residuals, jacobian, self.workspace)
+            rows, errors = jacobian[: x.size], residuals[: x.size]
+            loss += float(errors @ errors)
+            gram += rows.T @ rows
+            gradient += rows.T @ errors
+        return NormalEquations(loss, gram, gradient)

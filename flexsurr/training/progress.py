@@ -1,0 +1,61 @@
+"""What a fit has come to: its losses by epoch, and the best weights since its start."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import pandas as pd
+
+from flexsurr.simulation.rhs import Array
+
+COLUMNS = ("epoch", "wall_s", "train_loss", "validation_loss")
+
+
+@dataclass
+class Progress:
+    """Rows of COLUMNS, and the weights with the least validation loss; those of epoch 0 at first."""
+
+    best_loss: float
+    best_parameters: Array
+    best_epoch: int = 0
+    rows: list[tuple[float, float, float, float]] = field(default_factory=list)
+
+    @property
+    def epoch(self) -> int:
+        """Number of epochs done."""
+        return len(self.rows)
+
+    @property
+    def wall_s(self) -> float:
+        """Seconds spent on them, interruptions not counted."""
+        return self.rows[-1][1] if self.rows else 0.0
+
+    def add(self, wall_s: float, train_loss: float, validation_loss: float, parameters: Array) -> None:
+        """Note the next epoch, and its weights if none validated as well before."""
+        self.rows.append((self.epoch + 1.0, wall_s, train_loss, validation_loss))
+        if validation_loss < self.best_loss:
+            self.best_epoch, self.best_loss = self.epoch, validation_loss
+            self.best_parameters = parameters.astype(np.float64)
+
+    def history(self) -> pd.DataFrame:
+        """A row an epoch: epoch, wall_s, train_loss, validation_loss (nmse)."""
+        frame = pd.DataFrame(np.array(self.rows).reshape(-1, len(COLUMNS)), columns=list(COLUMNS))
+        return frame.astype({"epoch": np.int64})
+
+    def state(self) -> dict[str, Array]:
+        """Everything above, as arrays."""
+        return {
+            "rows": np.array(self.rows).reshape(-1, len(COLUMNS)),
+            "best_epoch": np.array(self.best_epoch),
+            "best_loss": np.array(self.best_loss),
+            "best_parameters": self.best_parameters,
+        }
+
+    @classmethod
+    def restored(cls, state: dict[str, Array]) -> "Progress":
+        """From a `state`."""
+        return cls(
+            best_loss=float(state["best_loss"]),
+            best_parameters=state["best_parameters"],
+            best_epoch=int(state["best_epoch"]),
+            rows=[tuple(row) for row in state["rows"].tolist()],
+        )

@@ -1,0 +1,56 @@
+"""From a sweep to its trials, each with a name that is its content."""
+
+import hashlib
+import itertools
+import json
+from typing import Any
+
+import numpy as np
+from pydantic import ValidationError
+
+from flexsurr.config.sweep import Space, Sweep, Trial
+
+DIGITS = 10
+
+
+def expand(sweep: Sweep) -> list[Trial]:
+    """The trials of `sweep`, in its order, none twice.
+
+    grid: every combination of every space. random: `draws` different combinations of each space, by its
+    seed; all of a space that has no more. Raises ValueError naming the space and the first combination
+    that makes no trial.
+    """
+    generator = np.random.default_rng(sweep.seed)
+    trials: dict[Trial, None] = {}
+    for number, space in enumerate(sweep.spaces, start=1):
+        combinations = _combinations(space)
+        if sweep.draws is not None and sweep.draws < len(combinations):
+            chosen = generator.choice(len(combinations), size=sweep.draws, replace=False)
+            combinations = [combinations[place] for place in sorted(chosen.tolist())]
+        trials |= dict.fromkeys(_trial(number, combination) for combination in combinations)
+    return list(trials)
+
+
+def run_id(trial: Trial, study: str, variant: str) -> str:
+    """The architecture and ten hex digits of the hash of everything that names a run."""
+    content = {"study": study, "variant": variant, "trial": trial.model_dump(mode="json")}
+    canonical = json.dumps(content, sort_keys=True, separators=(",", ":"))
+    return f"{trial.architecture}-{hashlib.sha256(canonical.encode()).hexdigest()[:DIGITS]}"
+
+
+def _combinations(space: Space) -> list[dict[str, Any]]:
+    values = space.model_dump(exclude_none=True)
+    architecture = values.pop("architecture")
+    return [
+        {"architecture": architecture, **dict(zip(values, combination, strict=True))}
+        for combination in itertools.product(*values.values())
+    ]
+
+
+def _trial(number: int, combination: dict[str, Any]) -> Trial:
+    try:
+        return Trial(**combination)
+    except ValidationError as error:
+        reasons = "; ".join(detail["msg"].removeprefix("Value error, ") for detail in error.errors())
+        shown = ", ".join(f"{key}: {value}" for key, value in combination.items())
+        raise ValueError(f"spaces, number {number} ({shown}): {reasons}") from None
