@@ -1,13 +1,15 @@
 """The dynamics as the equations read: loops over elements and joints, Jacobians by complex step.
 
 The baseline of cost: plain Python and NumPy, one column of the Jacobian after the other, in all n
-joint coordinates and only then projected onto the modes.
+joint coordinates and only then projected onto the modes. The gyroscopic term, which the study drops,
+is a derivative with respect to the model's own coordinates.
 """
 
 import numpy as np
 
 from flexsurr.beam.chain import chain
 from flexsurr.beam.dynamics import BeamModel
+from flexsurr.beam.kinematics import cross
 from flexsurr.config.structure import Joint, Structure
 from flexsurr.simulation.rhs import Array
 
@@ -88,19 +90,19 @@ def velocities(structure: Structure, q: Array, rates: Array) -> list[Array]:
         along = frame @ np.array([stretching, 0.0, 0.0])
         to_mass = frame @ np.array([0.5 * beam.element_length + stretch, beam.offset, 0.0])
         to_node = frame @ np.array([beam.element_length + stretch, 0.0, 0.0])
-        found.append(node_velocity + np.cross(turning, to_mass) + along)
-        node_velocity = node_velocity + np.cross(turning, to_node) + along
+        found.append(node_velocity + cross(turning, to_mass) + along)
+        node_velocity = node_velocity + cross(turning, to_node) + along
     return found
 
 
-def gyroscopic_forces(structure: Structure, q: Array, rates: Array) -> Array:
-    """½ ∂/∂q (q̇ᵀ M q̇) (n,) at fixed q̇: the complex step of the kinetic energy, joint by joint (eq. 6)."""
-    n = len(q)
-    forces = np.empty(n)
-    for k in range(n):
-        step = np.zeros(n, dtype=complex)
-        step[k] = 1j * _STEP
-        squares = [v @ v for v in velocities(structure, q + step, rates)]
+def gyroscopic_forces(structure: Structure, q: Array, rates: Array, modes: Array) -> Array:
+    """½ ∂/∂η (q̇ᵀ M q̇) (r,) with q = Φ η at fixed q̇: complex steps of the kinetic energy (eqs. 6, 10).
+
+    `modes` (n, r) is Φ; one step a coordinate of the model.
+    """
+    forces = np.empty(modes.shape[1])
+    for k, mode in enumerate(modes.T):
+        squares = [v @ v for v in velocities(structure, q + 1j * _STEP * mode, rates)]
         kinetic = 0.5 * chain(structure).element_mass * np.sum(squares)
         forces[k] = kinetic.imag / _STEP
     return forces
@@ -124,5 +126,5 @@ class DescribedBeam(BeamModel):
             for columns in jacobian:
                 forces = forces + modes.T @ (columns.T @ (beam.element_mass * beam.gravity))
         if self.variant == "hamiltonian":
-            forces = forces + modes.T @ gyroscopic_forces(structure, q, modes @ rates)
+            forces = forces + gyroscopic_forces(structure, q, modes @ rates, modes)
         return np.concatenate([rates, forces])
