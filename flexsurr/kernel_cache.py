@@ -3,8 +3,12 @@
 An integrator's machine code holds the equations it steps, but numba looks only at the integrator's own
 file to see whether the code is stale: after an edit of the equations it would go on running the old ones.
 So the folder it uses is named by a digest of every source that may end up in machine code, and an edit
-means another folder. Kernels defined outside this package are not in the digest; who edits those deletes
-the folder, or sets NUMBA_CACHE_DIR to one of their own.
+means another folder.
+
+Kernels defined outside this package need a folder of their own: numba could no longer read the package's
+in a process that does not know their modules. Their author says, before importing more of flexsurr,
+
+    flexsurr.kernel_cache.activate("my_kernels.py")
 
 Standard library only, and before numba is imported, since numba reads its settings on import.
 """
@@ -19,36 +23,61 @@ from collections.abc import Iterator
 from pathlib import Path
 
 PACKAGE = Path(__file__).parent
-KERNEL_FLOORS = ("simulation", "beam", "surrogates", "aerodynamics", "flight")
+KERNEL_FLOORS = ("simulation", "beam", "surrogates", "aerodynamics", "training", "flight")
 KEPT_UNUSED_DAYS = 14.0
 
 _VARIABLE = "NUMBA_CACHE_DIR"
 _PREFIX = "flexsurr-kernels-"
 
+_outside: set[Path] = set()
 
-def digest(package: Path = PACKAGE) -> str:
-    """Sixteen hex digits of the names and contents of the sources below the floors that hold kernels."""
+
+def digest(*outside: Path, package: Path = PACKAGE) -> str:
+    """Sixteen hex digits of the floors that hold kernels and of sources from outside the package."""
     sha = hashlib.sha256()
-    for floor in KERNEL_FLOORS:
-        for source in sorted((package / floor).rglob("*.py")):
-            sha.update(source.relative_to(package).as_posix().encode() + b"\0")
-            sha.update(source.read_bytes() + b"\0")
+    inside = [source for floor in KERNEL_FLOORS for source in sorted((package / floor).rglob("*.py"))]
+    for source in inside + sorted(outside):
+        name = source.relative_to(package) if source in inside else source
+        sha.update(name.as_posix().encode() + b"\0")
+        sha.update(source.read_bytes() + b"\0")
     return sha.hexdigest()[:16]
 
 
-def activate(package: Path = PACKAGE) -> None:
-    """Tell numba the folder of these sources, unless the user has chosen one.
+def activate(*outside: str | Path, package: Path = PACKAGE) -> None:
+    """Tell numba the folder of the package's sources and those `outside`, unless the user has chosen one.
 
     A folder that a parent process chose this way does not count: the sources may have changed since.
+    Raises RuntimeError if kernels from outside come too late, after the integrators have been imported.
     """
+    _outside.update(Path(source).resolve() for source in outside)
     numba = sys.modules.get("numba")
     chosen = os.environ.get(_VARIABLE) or (numba.config.CACHE_DIR if numba else "")
     if chosen and not Path(chosen).name.startswith(_PREFIX):
         return
-    folder = str(_folder(_PREFIX + digest(package), package))
+    if outside and "flexsurr.simulation" in sys.modules:
+        raise RuntimeError("call flexsurr.kernel_cache.activate before importing flexsurr.simulation")
+    folder = str(_folder(_PREFIX + digest(*_outside, package=package), package))
     os.environ[_VARIABLE] = folder
     if numba:
         numba.config.CACHE_DIR = folder
+
+
+def check_belongs(kernel_class: type) -> None:
+    """Raise RuntimeError for a kernel from outside whose machine code would go into the package's folder.
+
+    Classes of a script pass: numba recompiles theirs in each process.
+    """
+    module = sys.modules.get(kernel_class.__module__)
+    source = getattr(module, "__file__", None)
+    if kernel_class.__module__ == "__main__" or source is None:
+        return
+    path = Path(source).resolve()
+    ours = Path(os.environ.get(_VARIABLE, "")).name.startswith(_PREFIX)
+    if ours and path not in _outside and not path.is_relative_to(PACKAGE):
+        raise RuntimeError(
+            f"{kernel_class.__name__} is defined outside flexsurr: call flexsurr.kernel_cache.activate"
+            f"({str(path)!r}) before importing flexsurr.simulation, or set {_VARIABLE} to a folder of yours"
+        )
 
 
 def _folder(name: str, package: Path) -> Path:

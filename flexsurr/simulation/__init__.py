@@ -1,5 +1,6 @@
 """The right-hand side, integrators, trajectories."""
 
+from flexsurr.simulation.jacobian import implements_jacobian, jacobian
 from flexsurr.simulation.rhs import Array, CompiledModel, Model, evaluate, implements_rhs, rhs
 from flexsurr.simulation.simulate import simulate
 from flexsurr.simulation.trajectory import Trajectory
@@ -10,7 +11,9 @@ __all__ = [
     "Model",
     "Trajectory",
     "evaluate",
+    "implements_jacobian",
     "implements_rhs",
+    "jacobian",
     "rhs",
     "simulate",
 ]

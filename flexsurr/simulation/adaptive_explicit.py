@@ -56,8 +56,6 @@ def run_dop853(constant, kernel, t, x, rtol, atol, work):
     evaluations = 1
     if not all_finite(k[0]):
         return row, time, evaluations, steps, NOT_FINITE
-    if row == t.size:
-        return row, time, evaluations, steps, COMPLETED
     h = first_step(kernel, time, now, k[0], end - time, 7, rtol, atol, y, new, work)
     evaluations += 1
     rejected = False

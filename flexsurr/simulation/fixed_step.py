@@ -12,7 +12,7 @@ from numba import njit, types
 from numba.extending import overload
 
 from flexsurr.simulation.dimension import ORDERED, states
-from flexsurr.simulation.outcome import COMPLETED, NOT_CONVERGED, NOT_FINITE
+from flexsurr.simulation.outcome import COMPLETED, NOT_FINITE
 from flexsurr.simulation.rhs import Array
 
 # Sample times such as k·0.01 differ by an interval plus rounding; that must not cost a further step.
@@ -22,7 +22,7 @@ _ROUNDING = 1e-9
 def advance(
     method: NamedTuple, kernel: Any, t: float, h: float, x: Array, scratch: Array, work: Array
 ) -> int:
-    """Advance x (d,) from t by one step h [s]; the number of evaluations, or −1 if it failed.
+    """Advance x (d,) from t by one step h [s]; the number of evaluations, or −status if it fails.
 
     Callable from compiled code only.
     """
@@ -80,7 +80,7 @@ def run_fixed_step(method, kernel, t, x, longest_step, work):
         for n in range(count):
             calls = advance(method, kernel, begin + n * h, h, state, scratch, work)
             if calls < 0:
-                return row, begin + n * h, evaluations, steps, NOT_CONVERGED
+                return row, begin + n * h, evaluations, steps, -calls
             evaluations += calls
             if not all_finite(state):
                 return row, begin + n * h, evaluations, steps, NOT_FINITE

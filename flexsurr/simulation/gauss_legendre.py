@@ -15,6 +15,7 @@ from numba import njit
 from flexsurr.simulation.collocation import collocation_matrix, lagrange
 from flexsurr.simulation.dimension import Dimension, states
 from flexsurr.simulation.fixed_step import implements_advance
+from flexsurr.simulation.outcome import NOT_CONVERGED, NOT_FINITE
 from flexsurr.simulation.rhs import rhs
 
 _MOST_SWEEPS = 60
@@ -81,11 +82,13 @@ def _step(kernel, t, h, x, k, work, constant, c, a, b, extrapolation):
     for _ in range(_MOST_SWEEPS):
         change = _sweep(kernel, t, h, x, k, work, d, c, a)
         evaluations += stages
+        if change != change:
+            return -NOT_CONVERGED if np.isfinite(previous) else -NOT_FINITE
         if _has_converged(change, previous):
             _add_increment(x, h, k, d, b)
             return evaluations
         previous = change
-    return -1
+    return -NOT_CONVERGED
 
 
 @njit(error_model="numpy")

@@ -180,8 +180,6 @@ def run_radau(kernel, t, x, rtol, atol, work):
     evaluations = 1
     if not all_finite(slope):
         return row, time, evaluations, steps, NOT_FINITE
-    if row == t.size:
-        return row, time, evaluations, steps, COMPLETED
     h = first_step(kernel, time, now, slope, end - time, 3, rtol, atol, y, w, work)
     evaluations += 1 + jacobian(kernel, time, now, slope, jac, work)
     fresh_jacobian = True

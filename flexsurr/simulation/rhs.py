@@ -16,6 +16,8 @@ from numba import njit, types
 from numba.extending import overload
 from numpy.typing import NDArray
 
+from flexsurr.kernel_cache import check_belongs
+
 Array = NDArray[np.float64]
 
 # Reassociation and contraction vectorise sums; the flags that assume finite numbers stay off, so
@@ -81,6 +83,8 @@ def implements_rhs(
     an integrator; long equations are better called, for a dozen copies take long to compile.
     """
     options = {"fastmath": FLOATING_POINT, "error_model": "numpy", "_nrt": False, "forceinline": inline}
+
+    check_belongs(kernel_class)
 
     def register(equations: Callable[..., None]) -> Callable[..., None]:
         @overload(rhs, jit_options=options)

@@ -38,8 +38,11 @@ def simulate(model: Model, t: Array, x0: Array, integrator: Integrator) -> Traje
     run = (run_compiled if integrator.method in COMPILED else run_scipy)(model, integrator)
     x = np.empty((t.size, x0.size))
     x[0] = x0
-    breaks = [b for b in model.breakpoints if t[0] < b < t[-1]]
-    outcome = _run_pieces(run, t, x, breaks) if breaks else run(t, x)
+    breaks = [b for b in model.breakpoints if t[0] < b <= t[-1]]
+    if t.size == 1:
+        outcome = Outcome(rows=1, end_time_s=float(t[0]), evaluations=0, steps=0, reason="")
+    else:
+        outcome = _run_pieces(run, t, x, breaks) if breaks else run(t, x)
     return Trajectory(
         t=t[: outcome.rows],
         x=x[: outcome.rows],

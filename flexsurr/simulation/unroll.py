@@ -29,7 +29,7 @@ from flexsurr.simulation.dimension import ORDERED, states
 from flexsurr.simulation.rhs import rhs
 '''
 
-_DECORATOR = '@njit(error_model="numpy", fastmath=ORDERED)'
+_DECORATOR = '@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)'
 
 
 def _sum(row: Row, scale: str = "") -> str:

@@ -12,7 +12,7 @@ from flexsurr.simulation.dimension import ORDERED, states
 from flexsurr.simulation.rhs import rhs
 
 
-@njit(error_model="numpy", fastmath=ORDERED)
+@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)
 def rk4_step(kernel, t, h, x, x_new, k, y, work, constant):
     """Write the state at t + h into x_new, which may be x."""
     d = states(constant, x)
@@ -33,7 +33,7 @@ def rk4_step(kernel, t, h, x, x_new, k, y, work, constant):
         x_new[i] = x[i] + (h * 0.16666666666666666) * k0[i] + (h * 0.3333333333333333) * k1[i] + (h * 0.3333333333333333) * k2[i] + (h * 0.16666666666666666) * k3[i]
 
 
-@njit(error_model="numpy", fastmath=ORDERED)
+@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)
 def dop853_step(kernel, t, h, x, x_new, k, y, work, constant):
     """Write the state at t + h into x_new, which may be x."""
     d = states(constant, x)
@@ -86,7 +86,7 @@ def dop853_step(kernel, t, h, x, x_new, k, y, work, constant):
         x_new[i] = x[i] + (h * 0.054293734116568765) * k0[i] + (h * 4.450312892752409) * k5[i] + (h * 1.8915178993145003) * k6[i] - (h * 5.801203960010585) * k7[i] + (h * 0.3111643669578199) * k8[i] - (h * 0.1521609496625161) * k9[i] + (h * 0.20136540080403034) * k10[i] + (h * 0.04471061572777259) * k11[i]
 
 
-@njit(error_model="numpy", fastmath=ORDERED)
+@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)
 def dop853_error(x, x_new, k, rtol, atol, constant):
     """Sums of squares of the two error estimates over h, scaled."""
     d = states(constant, x)
@@ -109,7 +109,7 @@ def dop853_error(x, x_new, k, rtol, atol, constant):
     return square_3, square_5
 
 
-@njit(error_model="numpy", fastmath=ORDERED)
+@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)
 def dop853_dense(kernel, t, h, x, x_new, dense, k, y, work, constant):
     """Write the dense output's coefficients (7, d); k[12] holds f at the end of the step."""
     d = states(constant, x)

@@ -1,0 +1,177 @@
+"""Machine code outlives its process, and not the sources it came from."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from flexsurr import kernel_cache
+
+HERE = Path(__file__).parent
+PREFIX = "flexsurr-kernels-"
+
+EVERY_METHOD = """
+import json
+import numpy as np
+from flexsurr import kernel_cache
+kernel_cache.activate(KERNELS)
+from closed_form_problems import OSCILLATOR, planar
+from flexsurr.config.study import Integrator
+from flexsurr.simulation import adaptive_explicit, fixed_step, radau, simulate
+for method in ("rk4", "dop853_fixed", "gauss_legendre_4", "gauss_legendre_6", "dop853", "radau_iia_5"):
+    settings = {} if method in ("dop853", "radau_iia_5") else {"step_s": 0.01}
+    integrator = Integrator(method=method, **settings)
+    assert simulate(planar(OSCILLATOR, 1.0), np.array([0.0, 1.0]), np.ones(2), integrator).completed
+compiled = (fixed_step.run_fixed_step, adaptive_explicit.run_dop853, radau.run_radau)
+print(json.dumps({"hits": sum(sum(f.stats.cache_hits.values()) for f in compiled),
+                  "misses": sum(sum(f.stats.cache_misses.values()) for f in compiled)}))
+"""
+
+
+def run(code, *path, **environment):
+    kept = {k: v for k, v in os.environ.items() if k not in ("NUMBA_CACHE_DIR", "PYTHONPATH")}
+    return subprocess.run(
+        [sys.executable, "-c", code],
+        env={**kept, "PYTHONPATH": os.pathsep.join(map(str, path)), **environment},
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout
+
+
+def test_the_next_process_compiles_nothing():
+    code = EVERY_METHOD.replace("KERNELS", repr(str(HERE / "closed_form_problems.py")))
+    run(code, HERE)
+    assert json.loads(run(code, HERE)) == {"hits": 6, "misses": 0}
+
+
+def test_an_edit_of_equations_takes_effect(tmp_path):
+    """Numba alone would keep the old ones: it looks at the file of `evaluate` only."""
+    package = tmp_path / "flexsurr"
+    shutil.copytree(kernel_cache.PACKAGE, package, ignore=shutil.ignore_patterns("__pycache__"))
+    equations = package / "aerodynamics" / "constant.py"
+    equations.parent.mkdir(exist_ok=True)
+    (equations.parent / "__init__.py").touch()
+    source = """
+from typing import NamedTuple
+from flexsurr.simulation.rhs import implements_rhs
+class Constant(NamedTuple):
+    pass
+@implements_rhs(Constant)
+def _constant(kernel, t, x, dx, work):
+    dx[0] = VALUE
+"""
+    ask = """
+import numpy as np
+from flexsurr.aerodynamics.constant import Constant
+from flexsurr.simulation.rhs import evaluate
+dx = np.empty(1)
+evaluate(Constant(), 0.0, np.ones(1), dx, np.empty(0))
+print(dx[0], sum(evaluate.stats.cache_hits.values()))
+"""
+    equations.write_text(source.replace("VALUE", "1.0"))
+    assert run(ask, tmp_path).split() == ["1.0", "0"]
+    assert run(ask, tmp_path).split() == ["1.0", "1"]
+    equations.write_text(source.replace("VALUE", "2.0"))
+    assert run(ask, tmp_path).split() == ["2.0", "0"]
+
+
+def test_numba_uses_the_folder_also_if_it_came_first():
+    shown = run(
+        "import numba, flexsurr, os; print(numba.config.CACHE_DIR); print(os.environ['NUMBA_CACHE_DIR'])"
+    )
+    first, second = shown.split()
+    assert first == second
+    assert Path(first).name == PREFIX + kernel_cache.digest()
+
+
+def test_importing_the_package_does_not_import_numba():
+    assert run("import sys, flexsurr; print('numba' in sys.modules)").strip() == "False"
+
+
+def test_the_users_choice_stands(tmp_path):
+    ask = "import flexsurr, os; print(os.environ['NUMBA_CACHE_DIR'])"
+    assert run(ask, NUMBA_CACHE_DIR=str(tmp_path)).strip() == str(tmp_path)
+
+
+def test_a_parents_choice_does_not_stand(tmp_path):
+    ask = "import flexsurr, os; print(os.environ['NUMBA_CACHE_DIR'])"
+    inherited = str(tmp_path / (PREFIX + "0123456789abcdef"))
+    assert Path(run(ask, NUMBA_CACHE_DIR=inherited).strip()).name == PREFIX + kernel_cache.digest()
+
+
+def test_kernels_from_outside_need_a_folder_of_their_own(tmp_path):
+    (tmp_path / "mine.py").write_text(
+        "from typing import NamedTuple\n"
+        "from flexsurr.simulation import implements_rhs\n"
+        "class Mine(NamedTuple):\n    pass\n"
+        "@implements_rhs(Mine)\ndef _mine(kernel, t, x, dx, work):\n    dx[0] = 1.0\n"
+    )
+    with pytest.raises(subprocess.CalledProcessError) as refused:
+        run("import mine", tmp_path)
+    assert "Mine is defined outside flexsurr: call flexsurr.kernel_cache.activate" in refused.value.stderr
+    run("import mine", tmp_path, NUMBA_CACHE_DIR=str(tmp_path))
+    activate = f"from flexsurr import kernel_cache; kernel_cache.activate({str(tmp_path / 'mine.py')!r}); "
+    run(activate + "import mine", tmp_path)
+    with pytest.raises(subprocess.CalledProcessError) as late:
+        run("import flexsurr.simulation; " + activate, tmp_path)
+    assert "before importing flexsurr.simulation" in late.value.stderr
+
+
+@pytest.fixture
+def package(tmp_path, monkeypatch):
+    """A package of one kernel; whatever `activate` sets is undone."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", "")
+    monkeypatch.setattr("numba.config.CACHE_DIR", "")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    (tmp_path / "package" / "beam").mkdir(parents=True)
+    (tmp_path / "package" / "beam" / "sweep.py").write_text("ONE = 1\n")
+    return tmp_path / "package"
+
+
+def chosen(package):
+    kernel_cache.activate(package=package)
+    return Path(os.environ["NUMBA_CACHE_DIR"])
+
+
+def test_the_folder_follows_the_sources(package):
+    first = chosen(package)
+    assert first.parent == package / "__pycache__"
+    assert chosen(package) == first
+    (package / "beam" / "sweep.py").write_text("ONE = 2\n")
+    second = chosen(package)
+    (package / "beam" / "sweep.py").rename(package / "beam" / "other.py")
+    assert len({first, second, chosen(package)}) == 3
+    (package / "beam" / "other.py").rename(package / "beam" / "sweep.py")
+    assert chosen(package) == second
+
+
+def test_a_package_that_cannot_be_written_to_uses_the_users_cache(package, tmp_path):
+    (package / "__pycache__").write_text("in the way")
+    assert chosen(package).parent == tmp_path / "cache" / "flexsurr"
+
+
+def test_the_last_resort_is_a_temporary_folder(package, tmp_path, monkeypatch):
+    (package / "__pycache__").write_text("in the way")
+    (tmp_path / "cache").write_text("in the way")
+    monkeypatch.setattr(Path, "home", lambda: tmp_path / "cache")
+    folder = chosen(package)
+    assert folder.is_dir()
+    folder.rmdir()
+
+
+def test_folders_unused_for_long_are_removed_when_a_new_one_is_made(package):
+    old = chosen(package)
+    recent = package / "__pycache__" / (PREFIX + "recent")
+    recent.mkdir()
+    (old / "code.nbc").write_text("")
+    long_ago = time.time() - (kernel_cache.KEPT_UNUSED_DAYS + 1) * 86400
+    os.utime(old, (long_ago, long_ago))
+    (package / "beam" / "sweep.py").write_text("ONE = 2\n")
+    new = chosen(package)
+    assert {path.name for path in (package / "__pycache__").iterdir()} == {new.name, recent.name}
