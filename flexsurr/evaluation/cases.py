@@ -9,6 +9,7 @@ from scipy.optimize import root
 
 from flexsurr.beam import (
     EquilibriumNotFound,
+    Implementation,
     Load,
     ModalBasis,
     SineTipForce,
@@ -29,6 +30,10 @@ TIGHT = Integrator(method="dop853", rtol=1e-12, atol=1e-14)
 # apart, so that a model is not judged by the responses that selected it.
 FIRST_SELECTION_CASE = 1_000_000
 FIRST_EVALUATION_CASE = 2_000_000
+
+
+DRAWN_EVERY_S = 0.002
+"""Longest step between samples that draw a smooth curve; the study's is for measuring errors."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +64,7 @@ class Reference:
 def free_cases(basis: ModalBasis, study: Study, first: int, count: int) -> list[Case]:
     """Free responses from random initial states, numbers `first` to `first + count − 1`."""
     states = draw_initial_conditions(basis, study.dataset.initial_conditions, study.seed, first, count)
-    return [Case(number=k, x0=np.array(x0)) for k, x0 in enumerate(states)]
+    return [Case(number=k, x0=np.array(x0)) for k, x0 in enumerate(states, start=first)]
 
 
 def forced_cases(basis: ModalBasis, study: Study, first: int, count: int) -> list[Case]:
@@ -110,7 +115,7 @@ def sample_times(duration_s: float, step_s: float) -> Array:
     return np.linspace(0.0, duration_s, max(round(duration_s / step_s), 1) + 1)
 
 
-def under(model: Model, basis: ModalBasis, case: Case, implementation: str) -> Model:
+def under(model: Model, basis: ModalBasis, case: Case, implementation: Implementation) -> Model:
     """The model with the load of the case: the paper's augmented structure (Fig. 11), or itself."""
     return model if case.load is None else loaded(model, basis, case.load, implementation)
 

@@ -2,18 +2,16 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
-from flexsurr.beam import ModalBasis, reduced_order
+from flexsurr.beam import Implementation, ModalBasis, reduced_order
 from flexsurr.config.study import Variant
 from flexsurr.evaluation.cases import Case, under
 from flexsurr.simulation.rhs import Array, Model
 from flexsurr.surrogates import compiled
 
-Implementation = Literal["described", "numpy", "compiled", "torch"]
-
-# A load has no torch form and needs none: the network runs in torch, the load beside it in NumPy.
-LOAD_IMPLEMENTATION: dict[str, str] = {"torch": "numpy"}
+Form = Literal["described", "numpy", "compiled", "torch"]
+"""How a model is computed: as the reference models are, or by torch's autograd."""
 
 
 @dataclass(frozen=True)
@@ -24,15 +22,14 @@ class Contender:
     """
 
     model: str
-    implementation: Implementation
+    implementation: Form
     field: Model
     own_energy: Any = None
 
     def under(self, basis: ModalBasis, case: Case) -> Model:
-        """The field with the load of the case."""
-        return under(
-            self.field, basis, case, LOAD_IMPLEMENTATION.get(self.implementation, self.implementation)
-        )
+        """The field with the load of the case; beside torch, which has no load, the load in NumPy."""
+        implementation = "numpy" if self.implementation == "torch" else self.implementation
+        return under(self.field, basis, case, implementation)
 
     def energy(self, x: Array) -> Array | None:
         """The model's own energy (k,) [J] at states x (k, 2r)."""
@@ -46,9 +43,8 @@ def contenders(
 
     `surrogates` maps an architecture's name to its fitted surrogate. A polynomial has no torch form.
     """
-    implementations: tuple[Implementation, ...] = ("described", "numpy", "compiled")
     found = []
-    for implementation in implementations:
+    for implementation in get_args(Implementation):
         rom = reduced_order(basis, variant, implementation)
         found.append(Contender("rom", implementation, rom, rom.energy))
     for name, surrogate in surrogates.items():

@@ -63,7 +63,7 @@ def cost_table(
     frame.insert(1, "variant", variant)
     frame.insert(2, "response", response)
     frame = beside(frame)
-    return frame[[*COST_COLUMNS, *frame.columns.difference(COST_COLUMNS, sort=False)]]
+    return frame[[*COST_COLUMNS, *frame.columns.difference(list(COST_COLUMNS), sort=False)]]
 
 
 def setups(models: Iterable[Contender], integrators: Iterable[Integrator]) -> Iterator[Setup]:

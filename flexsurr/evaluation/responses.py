@@ -9,7 +9,14 @@ import pandas as pd
 from flexsurr.beam import ModalBasis, reduced_order
 from flexsurr.config.study import Integrator, Study, Variant
 from flexsurr.evaluation.accuracy import tip_error_percent
-from flexsurr.evaluation.cases import Reference, Response, evaluation_cases, reference_solution
+from flexsurr.evaluation.cases import (
+    DRAWN_EVERY_S,
+    Reference,
+    Response,
+    evaluation_cases,
+    reference_solution,
+    sample_times,
+)
 from flexsurr.evaluation.contenders import Contender, contenders
 from flexsurr.simulation import simulate
 
@@ -27,9 +34,6 @@ RESPONSE_COLUMNS = (
 SURROGATE_INTEGRATOR = Integrator(method="dop853", rtol=1e-10, atol=1e-12)
 """Tight enough that what is drawn is the surrogate's error, not the integrator's."""
 
-# Eleven samples a period are enough to measure an error and too few to draw a smooth curve.
-DRAWN_EVERY_S = 0.002
-
 
 def response_table(
     study: Study, basis: ModalBasis, variant: Variant, response: Response, surrogates: Mapping[str, Any]
@@ -41,8 +45,7 @@ def response_table(
     trajectory that ends early ends its rows.
     """
     case = evaluation_cases(basis, study, response)[0]
-    step_s = min(study.evaluation.output_step_s, DRAWN_EVERY_S)
-    t = np.linspace(0.0, study.evaluation.duration_s, round(study.evaluation.duration_s / step_s) + 1)
+    t = sample_times(study.evaluation.duration_s, min(study.evaluation.output_step_s, DRAWN_EVERY_S))
     reference = reference_solution(basis, variant, case, t)
     models = [
         c

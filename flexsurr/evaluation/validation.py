@@ -14,14 +14,14 @@ STEP_S = 1e-3
 
 # The lumps at mid-element put frequencies into the full-order model far above anything seen in its
 # response: an implicit method steps over them.
-INTEGRATOR = Integrator(method="radau_iia_5", rtol=1e-8, atol=1e-10)
+INTEGRATOR = Integrator(method="radau_iia_5", rtol=1e-6, atol=1e-9)
 
 
 def validation_table(study: Study, basis: ModalBasis) -> pd.DataFrame:
-    """From rest under the study's tip force for `validation_duration_s`; columns `VALIDATION_COLUMNS`, tip in [m].
+    """From rest under the study's tip force, for its validation_duration_s; columns `VALIDATION_COLUMNS`.
 
-    One block of rows for each of the study's variants and each model, "fom" and "rom". A trajectory
-    that ends early ends its rows.
+    Tip positions in [m]. One block of rows for each of the study's variants and each model, "fom" and
+    "rom". A trajectory that ends early ends its rows.
     """
     structure = basis.structure
     duration_s = study.evaluation.validation_duration_s

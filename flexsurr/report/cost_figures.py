@@ -41,7 +41,7 @@ def cost_accuracy(cost: pd.DataFrame) -> Figure:
 
     `cost`: the columns of cost.csv. One row of panels for each response, one column for each
     variant. Labelled: the Pareto front, and the baselines and torch with SciPy's Radau. A setup of which
-    a simulation diverged is hollow; one of which all did stands on the upper edge.
+    a simulation diverged is hollow; one of which all did has no place.
     """
     responses = [response for response in RESPONSES if response in set(cost["response"])]
     variants = [variant for variant in VARIANTS if variant in set(cost["variant"])]
@@ -84,38 +84,44 @@ def _panel(ax: Axes, cost: pd.DataFrame) -> None:
         zorder=1,
     )
     top = ax.get_ylim()[1]
-    points = []
-    for setup in cost.itertuples():
-        lost = not np.isfinite(setup.tip_error_percent)
-        points.append((setup.wall_s_mean, top if lost else setup.tip_error_percent))
+    points, labels = [], []
+    for setup, of_front in zip(cost.to_dict("records"), cost.index.isin(front.index), strict=True):
+        model, implementation, method = (
+            str(setup["model"]),
+            str(setup["implementation"]),
+            integrator_method(str(setup["integrator"])),
+        )
+        wall_s, error = float(setup["wall_s_mean"]), float(setup["tip_error_percent"])
+        if not np.isfinite(wall_s):
+            continue
+        point = (wall_s, error if np.isfinite(error) else top)
+        points.append(point)
         ax.plot(
-            *points[-1],
-            MARKERS[str(setup.implementation)],
-            color=colour(str(setup.model)),
+            *point,
+            MARKERS[implementation],
+            color=colour(model),
             markersize=4.2,
-            markerfacecolor="none" if setup.diverged else None,
             markeredgewidth=0.8,
+            markerfacecolor="none" if setup["diverged"] else None,
             zorder=3,
             clip_on=False,
         )
+        if of_front or _is_landmark(model, implementation, method):
+            way = implementation if method == "scipy_radau" else SHORT.get(method, method)
+            labels.append((point, f"{label(model)}, {way}", colour(model)))
     _published(ax, cost)
-    named = cost["implementation"].isin(["described", "torch"]) | (
-        (cost["integrator"] == "scipy_radau") & (cost["model"] == "rom")
+    place_labels(
+        ax,
+        [at for at, _, _ in labels],
+        [text for _, text, _ in labels],
+        [shade for _, _, shade in labels],
+        obstacles=points,
     )
-    chosen = [
-        (point, _text(setup), colour(str(setup.model)))
-        for point, setup, said in zip(points, cost.itertuples(), named, strict=True)
-        if np.isfinite(point[0]) and (said or setup.Index in front.index)
-    ]
-    if chosen:
-        place_labels(ax, *zip(*chosen, strict=True), obstacles=[p for p in points if np.isfinite(p[0])])
 
 
-def _text(setup) -> str:
-    method = integrator_method(str(setup.integrator))
-    if method == "scipy_radau":
-        return f"{label(str(setup.model))}, {setup.implementation}"
-    return f"{label(str(setup.model))}, {SHORT.get(method, method)}"
+def _is_landmark(model: str, implementation: str, method: str) -> bool:
+    """The baselines and what the study's authors ran: labelled wherever they lie."""
+    return implementation in ("described", "torch") or (model == "rom" and method == "scipy_radau")
 
 
 def _published(ax: Axes, cost: pd.DataFrame) -> None:
@@ -127,12 +133,14 @@ def _published(ax: Axes, cost: pd.DataFrame) -> None:
     at = float(described.iloc[0]) * float(percent.iloc[0]) / 100.0
     ax.axvline(at, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)), zorder=0)
     ax.annotate(
-        f"published HNN:\n{percent.iloc[0]:g} % of described",
-        (at, 0.02),
+        f"published HNN, {percent.iloc[0]:g} % of described",
+        (at, 0.45),
         xycoords=("data", "axes fraction"),
-        xytext=(-3, 0),
+        xytext=(-2, 0),
         textcoords="offset points",
         ha="right",
+        va="center",
+        rotation=90,
         fontsize=6,
         color="#555555",
     )
@@ -156,4 +164,4 @@ def _legend(figure: Figure, cost: pd.DataFrame) -> None:
         if name in set(cost["implementation"])
     ]
     handles.append(Line2D([], [], color="#C9C9C9", linewidth=3.0, label="Pareto front"))
-    figure.legend(handles=handles, loc="outside upper center", ncols=min(len(handles), 9), columnspacing=1.2)
+    figure.legend(handles=handles, loc="outside upper center", ncols=-(-len(handles) // 2))

@@ -8,8 +8,14 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle, FancyArrowPatch, FancyBboxPatch
 
 from flexsurr.report.style import BLACK, new_figure
+from flexsurr.simulation.rhs import Array
 
 Point = tuple[float, float]
+
+
+def pair(point: Array) -> Point:
+    """The point (2,) as the two numbers that patches and texts ask for."""
+    return float(point[0]), float(point[1])
 
 
 def canvas(width_in: float, height_in: float, units_per_in: float = 1.0) -> tuple[Figure, Axes]:

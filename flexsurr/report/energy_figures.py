@@ -40,12 +40,14 @@ def figure_13(energy: pd.DataFrame) -> Figure:
         shown = energy[energy["variant"] == variant]
         models = shown[shown["panel"] == "models"]
         _energies(column[0], models)
-        for model, part in models.groupby("model", sort=False):
+        for model, part in _each(models, "model"):
             _drift(column[1], part, colour(model), dashes(model), label(model))
-        for integrator, part in shown[shown["panel"] == "integrators"].groupby("integrator", sort=False):
+        for integrator, part in _each(shown[shown["panel"] == "integrators"], "integrator"):
             line, style = integrator_colour(integrator)
             _drift(column[2], part, line, style, integrator_name(integrator))
-        column[0].set_title(VARIANTS[variant], loc="left")
+        titles = (VARIANTS[variant], "models, an integrator without drift", "integrators, the exact field")
+        for ax, title in zip(column, titles, strict=True):
+            ax.set_title(title, loc="left")
     for ax, text in zip(grid[:, 0], ("energy [J]", "energy drift [%]", "energy drift [%]"), strict=True):
         ax.set_ylabel(text)
     for ax in grid[0]:
@@ -62,7 +64,7 @@ def figure_13(energy: pd.DataFrame) -> Figure:
 
 def _energies(ax: Axes, models: pd.DataFrame) -> None:
     """Energy against time over the first oscillations."""
-    for model, part in models.groupby("model", sort=False):
+    for model, part in _each(models, "model"):
         part = part[part["t_s"] <= ENERGY_SHOWN_S]
         ax.plot(part["t_s"], part["energy_J"], color=colour(model), linestyle=dashes(model))
     ax.margins(x=0.0)
@@ -76,3 +78,8 @@ def _drift(ax: Axes, part: pd.DataFrame, line: str, style: object, name: str) ->
     logarithmic(ax, y=True)
     ax.margins(x=0.0)
     ax.set_xlabel("time [s]")
+
+
+def _each(frame: pd.DataFrame, column: str) -> list[tuple[str, pd.DataFrame]]:
+    """The rows of each value of a column, in order of appearance."""
+    return [(str(value), part) for value, part in frame.groupby(column, sort=False)]

@@ -9,7 +9,7 @@ from matplotlib.patches import Arc, Circle, Polygon, Rectangle
 
 from flexsurr.beam import element_frames, node_positions
 from flexsurr.config.structure import Structure
-from flexsurr.report.diagram import arrow, canvas
+from flexsurr.report.diagram import arrow, canvas, pair
 from flexsurr.report.style import BLACK, BLUE, GREEN, GREY, PAGE_IN, VERMILION, styled
 from flexsurr.simulation.rhs import Array
 
@@ -51,14 +51,18 @@ def figure_03(structure: Structure) -> Figure:
     for i in range(DRAWN_ELEMENTS):
         ax.plot(*nodes[i : i + 2].T, color=BLACK, linewidth=3.2, solid_capstyle="butt", zorder=2)
     for i, node in enumerate(nodes[:-1]):
-        ax.add_patch(Circle(node, 0.75 * size, facecolor="white", edgecolor=BLACK, linewidth=1.0, zorder=4))
+        ax.add_patch(
+            Circle(pair(node), 0.75 * size, facecolor="white", edgecolor=BLACK, linewidth=1.0, zorder=4)
+        )
         _spiral_spring(ax, node, 1.9 * size)
         _turn(ax, node, nodes[i] - nodes[i - 1] if i else np.array([1.0, 0.0]), q[i], 0.9 * length, i + 1)
     for i, mass in enumerate(masses):
-        ax.add_patch(Circle(mass, 1.05 * size, facecolor=BLUE, edgecolor="white", linewidth=0.8, zorder=5))
+        ax.add_patch(
+            Circle(pair(mass), 1.05 * size, facecolor=BLUE, edgecolor="white", linewidth=0.8, zorder=5)
+        )
         normal = np.array([frames[i, 0, 2], frames[i, 2, 2]])
         ax.text(
-            *(mass + 0.05 * beam.length_m * normal), rf"$m_{i + 1}$", ha="center", va="center", color=BLUE
+            *pair(mass + 0.05 * beam.length_m * normal), rf"$m_{i + 1}$", ha="center", va="center", color=BLUE
         )
 
     top = origin + np.array([-0.03, 0.515]) * beam.length_m
@@ -78,10 +82,12 @@ def figure_03(structure: Structure) -> Figure:
                 solid_capstyle="butt",
             )
         elif kind == "joint":
-            ax.add_patch(Circle(at, 0.75 * size, facecolor="white", edgecolor=BLACK, linewidth=1.0, zorder=4))
+            ax.add_patch(
+                Circle(pair(at), 0.75 * size, facecolor="white", edgecolor=BLACK, linewidth=1.0, zorder=4)
+            )
             _spiral_spring(ax, at, 1.9 * size)
         else:
-            ax.add_patch(Circle(at, 1.05 * size, facecolor=BLUE, edgecolor="white", linewidth=0.8))
+            ax.add_patch(Circle(pair(at), 1.05 * size, facecolor=BLUE, edgecolor="white", linewidth=0.8))
         ax.text(at[0] + 0.06, at[1], text, ha="left", va="center")
     _dimension(ax, nodes[3], nodes[4], 0.085 * beam.length_m, "$l$")
     return figure
@@ -114,14 +120,14 @@ def figure_04(structure: Structure) -> Figure:
         _frame(
             ax, origin, nodes[i], frames[i], 0.11 * beam.length_m, AXES_COLOURS, [f"${n}_5$" for n in names]
         )
-        ax.add_patch(Circle(_seen(origin, masses[i]), 0.012 * beam.length_m, facecolor=BLACK, zorder=5))
+        ax.add_patch(Circle(pair(_seen(origin, masses[i])), 0.012 * beam.length_m, facecolor=BLACK, zorder=5))
         middle = nodes[i] + 0.5 * length * frames[i, :, 0]
         ax.plot(*_seen(origin, np.array([middle, masses[i]])).T, color=BLACK, linewidth=0.8, zorder=3)
     _frame(ax, origin, np.zeros(3), np.eye(3), 0.27 * beam.length_m, (BLACK,) * 3, ("$x$", "$y$", "$z$"))
 
     k = 3
     mass = _seen(origin, masses[k])
-    arrow(ax, tuple(origin), tuple(mass), POSITION)
+    arrow(ax, pair(origin), pair(mass), POSITION)
     above, below = np.array([[-0.36, 0.22], [0.07, -0.2]]) * beam.length_m
     _note(ax, rf"$r_{k + 1}(q)$, position of mass {k + 1} (eq. 1)", 0.5 * (origin + mass), above, POSITION)
     _note(
@@ -180,7 +186,7 @@ def _turn(ax: Axes, at: Array, before: Array, angle: float, radius: float, numbe
     end = at + radius * np.array([np.cos(start), np.sin(start)])
     ax.plot((at[0], end[0]), (at[1], end[1]), color=GREY, linewidth=0.6, linestyle=(0, (3, 2)), zorder=1)
     arc = Arc(
-        at,
+        pair(at),
         1.8 * radius,
         1.8 * radius,
         theta1=np.rad2deg(start),
@@ -199,11 +205,14 @@ def _dimension(ax: Axes, start: Array, end: Array, distance: float, text: str) -
     across = distance * np.array([-along[1], along[0]])
     a, b = start + across, end + across
     ax.annotate(
-        "", a, b, arrowprops={"arrowstyle": "<|-|>", "lw": 0.6, "color": BLACK, "shrinkA": 0, "shrinkB": 0}
+        "",
+        pair(a),
+        pair(b),
+        arrowprops={"arrowstyle": "<|-|>", "lw": 0.6, "color": BLACK, "shrinkA": 0, "shrinkB": 0},
     )
     for point, line_end in ((start, a), (end, b)):
         ax.plot(*np.array([point + 0.25 * across, line_end + 0.12 * across]).T, color=GREY, linewidth=0.5)
-    ax.text(*(0.5 * (a + b) + 0.35 * across), text, ha="center", va="center")
+    ax.text(*pair(0.5 * (a + b) + 0.35 * across), text, ha="center", va="center")
 
 
 def _seen(origin: Array, points: Array) -> Array:
@@ -224,22 +233,22 @@ def _frame(
     """The axes (3, 3), columns, as arrows from `at`, with `names` at their ends if there are any."""
     for column, colour in enumerate(colours):
         end = _seen(origin, at + size * axes[:, column])
-        arrow(ax, tuple(_seen(origin, at)), tuple(end), colour)
+        arrow(ax, pair(_seen(origin, at)), pair(end), colour)
     for column, name in enumerate(names):
         direction = _seen(np.zeros(2), axes[:, column])
         along = direction / np.linalg.norm(direction)
         # x lies on the elastic axis: its name stands beside the line
         gap = 0.045 * (np.array([along[1], -along[0]]) if column == 0 and axes[2, 0] > 0.0 else along)
         text = _seen(origin, at + size * axes[:, column]) + gap
-        ax.text(*text, name, ha="center", va="center", color=colours[column])
+        ax.text(*pair(text), name, ha="center", va="center", color=colours[column])
 
 
 def _note(ax: Axes, text: str, at: Array, offset: Array, colour: str) -> None:
     """Text at `at` + `offset`, tied to `at` by a thin line."""
     ax.annotate(
         text,
-        at,
-        at + offset,
+        pair(at),
+        pair(at + offset),
         ha="left",
         va="center",
         color=colour,

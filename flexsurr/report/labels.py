@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
 
 from flexsurr.simulation.rhs import Array
 
@@ -68,6 +69,7 @@ def place_labels(
             va=_side(dy, ("top", "center", "bottom")),
             fontsize=size,
             color=colour,
+            path_effects=[withStroke(linewidth=1.2, foreground="white")],
             arrowprops=line if distance >= _TIED_FROM else None,
         )
 

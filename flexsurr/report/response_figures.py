@@ -6,13 +6,14 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from flexsurr.report.style import (
     BLACK,
     PAGE_IN,
     VARIANTS,
     colour,
-    dashes,
     label,
     letter,
     logarithmic,
@@ -22,6 +23,9 @@ from flexsurr.report.style import (
 
 WINDOW_S = 0.6
 """Length of a window in which single oscillations can be seen."""
+
+MARKED_EVERY_S = 0.045
+_MARKERS = ("", "s", "o", "^")
 
 LOADED = "#F6E7C8"
 
@@ -63,46 +67,73 @@ def _histories(response: pd.DataFrame, forced: bool) -> Figure:
         if forced:
             for ax in column:
                 ax.axvspan(0.0, load_end_s, color=LOADED, linewidth=0, zorder=0)
-        column[0].set_title(VARIANTS[variant], loc="left")
+        first = "end of the force" if forced else "first oscillations"
+        titles = (f"{first}, {VARIANTS[variant]}", "last oscillations", "largest error so far")
+        for ax, title in zip(column, titles, strict=True):
+            ax.set_title(title, loc="left")
     for ax in grid[:2, 0]:
         ax.set_ylabel("tip height z [m]")
     grid[2, 0].set_ylabel("tip error [% of the peak]")
-    if forced:
-        # the axes clip the span to their own window
-        grid[0, 0].annotate(
-            "force acts", (0.02, 0.04), xycoords="axes fraction", fontsize=7, color="#8A6A1F", ha="left"
+    handles = [
+        Line2D(
+            [], [], color=colour(model), marker=_MARKERS[k % 4], markerfacecolor="white", label=label(model)
         )
-    lines = {line.get_label(): line for line in grid[0, 0].get_lines()}
-    figure.legend(lines.values(), lines.keys(), loc="outside upper center", ncols=len(lines))
+        for k, model in enumerate(_models(response))
+    ]
+    shade = [Patch(color=LOADED, label="force acts")] if forced else []
+    figure.legend(handles=[*handles, *shade], loc="outside upper center", ncols=len(handles) + len(shade))
     letter(grid.ravel())
     return figure
 
 
 def _window(ax: Axes, shown: pd.DataFrame, start_s: float, end_s: float) -> None:
-    """Tip height of every model between two times."""
-    for model in _models(shown):
+    """Tip height of every model between two times.
+
+    The reference lies over the surrogates' lines and under their markers, which take turns: a model
+    that coincides with it still shows its markers, one that strays its line.
+    """
+    models = _models(shown)
+    for k, model in enumerate(models):
         part = shown[(shown["model"] == model) & shown["t_s"].between(start_s, end_s)]
+        t, z = part["t_s"].to_numpy(), part["tip_z_m"].to_numpy()
         reference = model == "reference"
-        ax.plot(
-            part["t_s"],
-            part["tip_z_m"],
-            color="#B8B8B8" if reference else colour(model),
-            linestyle="-" if reference else dashes(model),
-            linewidth=3.0 if reference else 1.1,
-            label=label(model),
-            zorder=1 if reference else 2,
-        )
+        ax.plot(t, z, color=colour(model), linewidth=1.0 if reference else 0.8, zorder=3 if reference else 2)
+        if not reference:
+            times = np.arange(start_s + k * MARKED_EVERY_S / len(models), end_s, MARKED_EVERY_S)
+            at = np.unique(np.clip(np.searchsorted(t, times), 0, max(t.size - 1, 0)))[: t.size]
+            ax.plot(
+                t[at],
+                z[at],
+                _MARKERS[k % 4],
+                color=colour(model),
+                markerfacecolor="white",
+                markersize=3.6,
+                markeredgewidth=0.9,
+                zorder=4,
+            )
     ax.set(xlim=(start_s, end_s), xlabel="time [s]")
 
 
 def _errors(ax: Axes, shown: pd.DataFrame, end_s: float) -> None:
     """The largest tip error so far, of every surrogate, on a logarithmic scale."""
-    for model in _models(shown)[1:]:
+    models = _models(shown)
+    for k, model in enumerate(models[1:], start=1):
         part = shown[(shown["model"] == model) & (shown["t_s"] > 0.0)]
-        worst = np.maximum.accumulate(np.maximum(part["tip_error_percent"], SMALLEST_PERCENT))
-        ax.plot(part["t_s"], worst, color=colour(model), linestyle=dashes(model))
-        if part["t_s"].max() < end_s:
-            ax.plot(part["t_s"].iloc[-1], worst.iloc[-1], "x", color=BLACK, markersize=5)
+        t = part["t_s"].to_numpy()
+        worst = np.maximum.accumulate(np.maximum(part["tip_error_percent"].to_numpy(), SMALLEST_PERCENT))
+        times = end_s * (np.arange(6) + k / len(models)) / 6.0
+        marked = np.searchsorted(t, times[times < t[-1]])
+        ax.plot(
+            t,
+            worst,
+            marker=_MARKERS[k % 4],
+            color=colour(model),
+            markerfacecolor="white",
+            markersize=3.6,
+            markevery=list(marked),
+        )
+        if t[-1] < end_s:
+            ax.plot(t[-1], worst[-1], "x", color=BLACK, markersize=5)
     logarithmic(ax, y=True)
     ax.set(xlim=(0.0, end_s), xlabel="time [s]")
 

@@ -1,6 +1,5 @@
 """One look for every figure: sizes for print, colours that colour-blind readers can tell apart, saving."""
 
-import os
 from collections.abc import Callable, Iterable
 from functools import wraps
 from pathlib import Path
@@ -11,6 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
+
+from flexsurr.storage import replacing
 
 Inputs = ParamSpec("Inputs")
 
@@ -151,19 +152,14 @@ def letter(axes: Iterable[Axes]) -> None:
 
 
 def save(figure: Figure, stem: Path) -> tuple[Path, Path]:
-    """Write `stem`.svg and `stem`.png, each beside its place and moved there; return both paths.
+    """Write `stem`.svg and `stem`.png, each there whole or not at all; return both paths.
 
     The bytes depend on the figure alone: no date, no version, no random identifiers.
     """
-    stem.parent.mkdir(parents=True, exist_ok=True)
     paths = (stem.with_name(f"{stem.name}.svg"), stem.with_name(f"{stem.name}.png"))
     with matplotlib.rc_context():
         matplotlib.rcParams.update(STYLE)
         for path, metadata in zip(paths, ({"Date": None, "Creator": None}, {"Software": None}), strict=True):
-            beside = path.with_name(f".{path.name}.{os.getpid()}")
-            try:
+            with replacing(path) as beside:
                 figure.savefig(beside, format=path.suffix[1:], metadata=metadata, dpi=PNG_DPI)
-                os.replace(beside, path)
-            finally:
-                beside.unlink(missing_ok=True)
     return paths

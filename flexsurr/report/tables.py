@@ -1,7 +1,6 @@
 """The tables: data frames whose columns are a contract, their files, and a page to read each on."""
 
 import html
-import os
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -9,6 +8,7 @@ import pandas as pd
 
 from flexsurr.evaluation.ratios import COST_COLUMNS
 from flexsurr.evaluation.statics import FREQUENCY_COLUMNS, STATIC_COLUMNS
+from flexsurr.storage import replacing
 
 TRAINING_COLUMNS = (
     "study",
@@ -47,12 +47,12 @@ def cost(costs: pd.DataFrame) -> pd.DataFrame:
 
 
 def save_table(frame: pd.DataFrame, path: Path) -> None:
-    """Write `frame` as CSV, nine significant digits, beside its place, and move it there."""
+    """Write `frame` as CSV, nine significant digits, there whole or not at all."""
     _write(path, frame.to_csv(index=False, float_format="%.9g", lineterminator="\n"))
 
 
 def save_page(frame: pd.DataFrame, title: str, caption: str, path: Path) -> None:
-    """Write `frame` as a page of HTML with a title and a caption, beside its place, and move it there."""
+    """Write `frame` as a page of HTML with a title and a caption, there whole or not at all."""
     _write(path, page(frame, title, caption))
 
 
@@ -92,13 +92,8 @@ def _word(value: object) -> str:
 
 
 def _write(path: Path, text: str) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    beside = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
+    with replacing(path) as beside:
         beside.write_text(text, encoding="utf-8")
-        os.replace(beside, path)
-    finally:
-        beside.unlink(missing_ok=True)
 
 
 _PAGE = """<!DOCTYPE html>

@@ -1,0 +1,85 @@
+"""The cost table of a short study: every setup in it, each judged by the same simulations."""
+
+import logging
+
+import pytest
+
+from flexsurr.evaluation import cost_table
+from flexsurr.evaluation.contenders import contenders
+from flexsurr.evaluation.cost import setups
+from flexsurr.evaluation.ratios import COST_COLUMNS, PAPERS_INTEGRATOR
+
+ORDER_8, GAUSS = "dop853_fixed(h=0.01)", "gauss_legendre_6(h=0.005)"
+
+
+@pytest.fixture(scope="module", params=["free", "forced"])
+def table(request, study, basis, fitted):
+    return cost_table("short", study, basis, "hamiltonian", request.param, {"polynomial": fitted})
+
+
+def test_every_model_implementation_and_integrator_has_its_row(table):
+    setups = set(zip(table["model"], table["implementation"], table["integrator"], strict=True))
+    assert setups == {
+        ("rom", "described", "scipy_radau"),
+        ("rom", "numpy", "scipy_radau"),
+        *(("rom", "compiled", integrator) for integrator in ("scipy_radau", ORDER_8, GAUSS)),
+        ("polynomial", "numpy", "scipy_radau"),
+        *(("polynomial", "compiled", integrator) for integrator in ("scipy_radau", ORDER_8, GAUSS)),
+    }
+    assert len(table) == len(setups)
+    assert list(table.columns[: len(COST_COLUMNS)]) == list(COST_COLUMNS)
+
+
+def test_the_described_baseline_runs_the_first_few_simulations(table, study):
+    described = table["implementation"] == "described"
+    assert (table[described]["simulations"] == study.evaluation.described_simulations).all()
+    assert (table[~described]["simulations"] == study.evaluation.simulations).all()
+    assert (table["diverged"] == 0).all()
+
+
+def test_implementations_and_surrogate_agree_with_the_reference_as_far_as_their_integrator_goes(table):
+    compiled = table.set_index(["model", "implementation", "integrator"])["tip_error_percent"]
+    assert compiled["rom", "compiled", ORDER_8] < 1e-2
+    assert compiled["polynomial", "compiled", ORDER_8] < 1e-2
+    # the same steps by the same solver, whoever computes the field; at default tolerances the error shows
+    assert compiled["rom", "compiled", "scipy_radau"] > 1e-2
+    assert compiled["rom", "numpy", "scipy_radau"] == pytest.approx(
+        compiled["rom", "compiled", "scipy_radau"], rel=0.05
+    )
+
+
+def test_energy_drift_is_of_the_free_motion(table):
+    drift = table.set_index(["model", "implementation", "integrator"])["energy_drift_percent"]
+    assert drift["rom", "compiled", GAUSS] < 1e-5
+    assert drift["polynomial", "compiled", GAUSS] < 1e-5
+
+
+def test_costs_are_positive_and_baselines_cost_all_of_themselves(table):
+    assert (table["wall_s_mean"] > 0.0).all()
+    rom = table[table["model"] == "rom"].set_index(["implementation", "integrator"])
+    assert rom.loc[("described", "scipy_radau"), "relative_to_described_percent"] == 100.0
+    assert rom.loc[("numpy", "scipy_radau"), "relative_to_numpy_percent"] == 100.0
+    for integrator in ("scipy_radau", ORDER_8, GAUSS):
+        assert rom.loc[("compiled", integrator), "relative_to_compiled_percent"] == 100.0
+
+
+def test_an_exploding_surrogate_is_counted(study, basis, exploding):
+    table = cost_table("short", study, basis, "hamiltonian", "free", {"polynomial": exploding})
+    polynomial = table[table["model"] == "polynomial"]
+    assert (polynomial["diverged"] == study.evaluation.simulations).all()
+    assert polynomial[["wall_s_mean", "tip_error_percent", "relative_to_numpy_percent"]].isna().all(axis=None)
+
+
+def test_a_person_who_watches_sees_each_row(study, basis, caplog):
+    with caplog.at_level(logging.INFO, logger="flexsurr.evaluation.cost"):
+        table = cost_table("short", study, basis, "as_printed", "free", {})
+    assert len(caplog.messages) == len(table)
+
+
+def test_the_papers_integrator_is_not_run_twice(study, basis):
+    integrators = (*study.evaluation.integrators, PAPERS_INTEGRATOR)
+    listed = [
+        (s.contender.implementation, s.integrator.label)
+        for s in setups(contenders(basis, "hamiltonian", {}), integrators)
+    ]
+    assert len(listed) == len(set(listed))

@@ -1,0 +1,57 @@
+"""Energy drift: of what conserves it, none; of what does not, as much as it says."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from flexsurr.evaluation.energy import ENERGY_COLUMNS, drift_percent, energy_table, relative_drift_percent
+
+
+@given(st.floats(1e-3, 1e3), st.floats(-50.0, 50.0))
+def test_a_linear_loss_drifts_by_its_share(energy, percent):
+    t = np.linspace(0.0, 1.0, 11)
+    lost = energy * (1.0 + 0.01 * percent * t)
+    assert relative_drift_percent(lost)[-1] == pytest.approx(abs(percent), abs=1e-9)
+    assert drift_percent(lost, t) == pytest.approx(abs(percent), abs=1e-9)
+
+
+def test_work_of_the_load_is_no_drift():
+    t = np.linspace(0.0, 1.0, 101)
+    energy = np.where(t < 0.5, 10.0 * t, 5.0)
+    assert drift_percent(energy, t, free_from_s=0.5) == 0.0
+    assert drift_percent(energy + 0.5 * (t > 0.7), t, free_from_s=0.5) == pytest.approx(10.0)
+
+
+def test_nothing_after_the_load_is_nothing_to_compare():
+    t = np.linspace(0.0, 1.0, 11)
+    assert np.isnan(drift_percent(np.ones(11), t, free_from_s=2.0))
+
+
+@pytest.fixture(scope="module")
+def table(study, basis, fitted):
+    return energy_table(study, basis, "hamiltonian", {"polynomial": fitted})
+
+
+def test_the_symplectic_run_of_the_exact_field_does_not_drift(table):
+    models = table[(table["panel"] == "models") & (table["model"] == "rom")]
+    assert models["integrator"].nunique() == 1
+    assert models["drift_percent"].max() < 1e-5
+
+
+def test_an_exact_surrogate_conserves_the_references_energy(table):
+    polynomial = table[(table["panel"] == "models") & (table["model"] == "polynomial")]
+    assert polynomial["drift_percent"].max() < 1e-5
+
+
+def test_every_integrator_is_shown_and_scipys_defaults_drift_most(table, study):
+    worst = table[table["panel"] == "integrators"].groupby("integrator")["drift_percent"].max()
+    assert {integrator.label for integrator in study.evaluation.integrators} < set(worst.index)
+    assert worst["scipy_radau"] > 100.0 * worst["dop853_fixed(h=0.01)"]
+    assert list(table.columns) == list(ENERGY_COLUMNS)
+
+
+def test_the_printed_field_has_no_energy_to_conserve(study, basis, fitted):
+    table = energy_table(study, basis, "as_printed", {})
+    rom = table[(table["panel"] == "models") & (table["model"] == "rom")]
+    assert 0.01 < rom["drift_percent"].max() < 10.0

@@ -1,0 +1,34 @@
+"""Wall times: the arithmetic of the clock, never its readings."""
+
+import gc
+import itertools
+
+import pytest
+
+from flexsurr.evaluation import timing
+
+
+def test_the_median_of_the_repeats_is_reported(monkeypatch):
+    readings = itertools.chain.from_iterable((0.0, seconds) for seconds in (9.0, 1.0, 3.0))
+    monkeypatch.setattr(timing, "perf_counter", lambda: next(readings))
+    calls = []
+    result, wall_s = timing.wall_time(lambda: calls.append(1) or len(calls), repeats=3)
+    assert (result, wall_s) == (3, 3.0)
+
+
+def test_time_is_positive_and_no_garbage_is_collected_meanwhile():
+    collecting, wall_s = timing.wall_time(gc.isenabled)
+    assert wall_s > 0.0
+    assert not collecting
+    assert gc.isenabled()
+
+
+def test_collection_is_switched_on_again_after_a_failure():
+    with pytest.raises(ZeroDivisionError):
+        timing.wall_time(lambda: 1 / 0)
+    assert gc.isenabled()
+
+
+def test_at_least_one_repeat():
+    with pytest.raises(ValueError, match="at least 1"):
+        timing.wall_time(lambda: None, repeats=0)
