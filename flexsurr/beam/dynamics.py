@@ -60,10 +60,11 @@ class BeamModel(ABC):
     def energy(self, x: Array) -> Array:
         """H = ½ pᵀ M⁻¹ p + ½ ηᵀ K η − Σ m g·(r − r(0)) (...,) [J] of states x (..., 2r).
 
-        Constant along undamped, unloaded motion of the hamiltonian variant.
+        Constant along undamped, unloaded motion of the hamiltonian variant. Complex states are taken too,
+        for derivatives by complex steps.
         """
         modes, r = self.projection.modes, self.projection.coordinates
-        x = np.asarray(x, dtype=np.float64)
+        x = np.asarray(x)
         eta, momenta = x[..., :r], x[..., r:]
         beam = chain(self.projection.structure)
         at = configuration(beam, eta @ modes.T)

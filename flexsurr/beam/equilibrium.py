@@ -11,7 +11,7 @@ from flexsurr.simulation.rhs import Array
 _STEP = 1e-30  # complex step: no cancellation, so as small as one likes
 _ITERATIONS = 30
 _SMALLEST_LOAD_STEP = 1.0 / 1024.0
-_TOLERANCE = 1e-11  # residual over the sum of the forces in it
+_TOLERANCE = 1e-11  # residual over the size of springs' and loads' moments
 
 
 class EquilibriumNotFound(ArithmeticError):
@@ -29,7 +29,7 @@ def find_equilibrium(structure: Structure, load: Load | None = None) -> Array:
     while reached < 1.0:
         fraction = min(1.0, reached + step)
         candidate, residual = _newton(structure, load, fraction, q)
-        if residual <= _TOLERANCE:
+        if residual <= _TOLERANCE:  # False for NaN as well
             q, reached, step = candidate, fraction, 2.0 * step
         else:
             step *= 0.5
@@ -65,23 +65,29 @@ def _forces(structure: Structure, q: Array, load: Load | None) -> Array:
     return generalised_forces(beam, configuration(beam, q), weights, on_centres, on_tip)
 
 
+def _size(structure: Structure, load: Load | None) -> float:
+    """Gravity and `load` as a moment over the length [N m]."""
+    beam = chain(structure)
+    on_centres, on_tip = static_forces(structure, load)
+    weight = beam.elements * beam.element_mass * np.linalg.norm(beam.gravity)
+    forces = weight + np.sum(np.linalg.norm(on_centres, axis=1)) + np.linalg.norm(on_tip)
+    return float(forces) * structure.length_m
+
+
 def _newton(structure: Structure, load: Load | None, fraction: float, q: Array) -> tuple[Array, float]:
-    """(q, relative residual) after Newton's iteration, stopped early when the residual is at rounding."""
+    """(q, relative residual) after Newton's iteration, stopped once the residual is at rounding."""
     stiffness = chain(structure).stiffness
-    relative = np.inf
+    applied = fraction * _size(structure, load)
+    previous = np.inf
     for _ in range(_ITERATIONS):
-        forces = fraction * _forces(structure, q, load)
-        residual = stiffness * q - forces
-        scale = float(np.linalg.norm(stiffness * q) + np.linalg.norm(forces))
+        residual = static_residual(structure, q, load, fraction)
+        scale = float(np.linalg.norm(stiffness * q)) + applied
         relative = float(np.linalg.norm(residual)) / scale if scale > 0.0 else 0.0
-        if relative <= 1e-15 or not np.isfinite(relative):
+        if relative == 0.0 or not np.isfinite(relative) or (relative <= _TOLERANCE and relative >= previous):
             break
-        tangent = tangent_stiffness(structure, q, load, fraction)
+        previous = relative
         try:
-            change = np.linalg.solve(tangent, residual)
+            q = q - np.linalg.solve(tangent_stiffness(structure, q, load, fraction), residual)
         except np.linalg.LinAlgError:
             return q, np.inf
-        q = q - change
-        if np.max(np.abs(change)) <= 1e-14 * (1.0 + np.max(np.abs(q))):
-            break
-    return q, relative if np.isfinite(relative) else np.inf
+    return q, relative

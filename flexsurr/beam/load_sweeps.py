@@ -56,7 +56,7 @@ def load_factor(kernel, t):
     return sine_cosine(kernel.frequency * t + kernel.phase)[0]
 
 
-@implements_rhs(PlanarLoaded)
+@implements_rhs(PlanarLoaded, inline=False)
 def planar_loaded_rhs(kernel, t, x, dx, work):
     """The model's right-hand side and the load's moments about the elements' roots."""
     rhs(kernel.model, t, x, dx, work)

@@ -92,7 +92,7 @@ class SineTipForce:
     def forces(self, structure: Structure) -> tuple[Array, Array]:
         """Forces on the elements' centres (N, 3) and on the tip (3,) [N], at a factor of 1."""
         direction = np.array(self.direction, dtype=np.float64)
-        return np.zeros((structure.elements, 3)), self.amplitude_N * direction / np.linalg.norm(direction)
+        return np.zeros((structure.elements, 3)), self.amplitude_N * direction / math.hypot(*direction)
 
 
 @dataclass(frozen=True)

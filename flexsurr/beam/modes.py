@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import eigh
+from scipy.linalg import LinAlgError, eigh
 
 from flexsurr.beam.chain import chain, check_coordinates, damping_matrix, stiffness_matrix
 from flexsurr.beam.equilibrium import find_equilibrium, tangent_stiffness
@@ -37,10 +37,16 @@ def natural_modes(structure: Structure, equilibrium: Array, load: Load | None = 
 
     The stiffness is the tangent one about `equilibrium` (n,): springs less the change of the generalised
     forces of gravity and `load` with q. Each mode's sign lifts the tip; where the tip does not move in
-    z, the mode's largest component is positive. ValueError where the equilibrium is unstable.
+    z, the mode's largest component is positive. ValueError where the equilibrium
+    is unstable, or where a joint moves no mass.
     """
     q = check_coordinates(structure, equilibrium, "equilibrium")
-    squares, modes = eigh(tangent_stiffness(structure, q, load), mass_matrix(structure, q))
+    try:
+        squares, modes = eigh(tangent_stiffness(structure, q, load), mass_matrix(structure, q))
+    except LinAlgError as error:
+        raise ValueError(
+            f"{structure.name}: a joint moves no mass; torsion needs inertia or offset"
+        ) from error
     if squares[0] < 0.0:
         raise ValueError(f"{structure.name}: the equilibrium is unstable (ω² = {squares[0]:.3g} rad²/s²)")
     return np.sqrt(squares), modes * _signs(structure, q, modes)

@@ -206,7 +206,8 @@ def spatial_chain_rhs(kernel, t, x, dx, work):
         add_dead_forces(axes, kernel.offset, kernel.weight, kernel.unloaded, kernel.unloaded[0], forces)
     if kernel.gyroscopic:
         joint_values(kernel.modes, dx, rates)
-        sweep_velocities(axes, kernel.offset, 0, rates, roots, masses)
+        # An untyped 0 would compile the sweep once more, for that number alone.
+        sweep_velocities(axes, kernel.offset, np.int64(0), rates, roots, masses)
         add_gyroscopic_forces(axes, kernel.offset, kernel.mass, rates, roots, masses, forces)
     for k in range(r):
         row = kernel.modes[k]

@@ -1,0 +1,77 @@
+"""Structures for the tests of the beam, and hypothesis strategies for them."""
+
+from itertools import combinations
+
+import numpy as np
+from hypothesis import strategies as st
+
+from flexsurr.beam import reduce
+from flexsurr.config.structure import JOINTS, Structure
+from flexsurr.config.study import Reduction
+
+CANTILEVER = Structure(
+    name="cantilever",
+    length_m=1.0,
+    elements=10,
+    joints=("out_of_plane",),
+    mass_per_length_kg_m=0.2,
+    bending_stiffness_out_of_plane_N_m2=50.0,
+)
+
+ALL_JOINTS = Structure(
+    name="all joints",
+    length_m=1.2,
+    elements=3,
+    joints=JOINTS,
+    mass_per_length_kg_m=0.4,
+    bending_stiffness_in_plane_N_m2=80.0,
+    bending_stiffness_out_of_plane_N_m2=50.0,
+    torsional_stiffness_N_m2=20.0,
+    axial_stiffness_N=600.0,
+    torsional_inertia_per_length_kg_m=0.01,
+    chord_m=0.2,
+    centre_of_gravity_offset_m=0.03,
+    clamp_psi_deg=10.0,
+    clamp_theta_deg=20.0,
+    clamp_phi_deg=-30.0,
+    gravity_m_s2=9.81,
+)
+
+SUBSETS = [subset for size in range(1, 5) for subset in combinations(JOINTS, size)]
+
+
+def change(structure: Structure, **values: object) -> Structure:
+    """A checked copy of `structure` with some values replaced."""
+    return Structure(**{**structure.model_dump(), **values})
+
+
+def structures(**fixed: object) -> st.SearchStrategy[Structure]:
+    """Chains of any joints, clamp, offset, gravity and damping; `fixed` overrides."""
+    angle = st.floats(-180.0, 180.0)
+    damping = st.sampled_from([0.0, 0.01])
+    drawn = {
+        "elements": st.integers(1, 5),
+        "joints": st.sampled_from(SUBSETS),
+        "centre_of_gravity_offset_m": st.sampled_from([0.0, 0.03, -0.15]),
+        "clamp_psi_deg": angle,
+        "clamp_theta_deg": angle,
+        "clamp_phi_deg": angle,
+        "gravity_m_s2": st.sampled_from([0.0, 9.81]),
+        "clamp_spring": st.sampled_from(["tip_deflection", "half_element"]),
+        **{f"damping_{joint}_s": damping for joint in JOINTS},
+    }
+    drawn.update({key: st.just(value) for key, value in fixed.items()})
+    return st.fixed_dictionaries(drawn).map(lambda values: change(ALL_JOINTS, **values))
+
+
+def coordinates(structure: Structure, seed: int, amplitude: float = 0.5) -> np.ndarray:
+    """Random joint coordinates q (n,)."""
+    return amplitude * np.random.default_rng(seed).uniform(-1.0, 1.0, structure.coordinates)
+
+
+def basis_of(structure: Structure, modes: int = 3, normalisation: str = "mass"):
+    """The first modes, or as many as there are."""
+    return reduce(structure, Reduction(modes=min(modes, structure.coordinates), normalisation=normalisation))
+
+
+SEEDS = st.integers(0, 2**32 - 1)
