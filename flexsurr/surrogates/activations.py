@@ -120,8 +120,8 @@ def _array_silu_curvature(z: Array) -> Array:
 
 _compile(
     Elu,
-    lambda tag, z: (z if z > 0.0 else 0.0) + exponential(z if z < 0.0 else 0.0) - 1.0,
-    lambda tag, z: exponential(z if z < 0.0 else 0.0),
+    lambda tag, z: (z if z > 0.0 else 0.0) + exponential(0.0 if z > 0.0 else z) - 1.0,
+    lambda tag, z: exponential(0.0 if z > 0.0 else z),
     lambda tag, z: exponential(z) if z < 0.0 else 0.0,
 )
 _compile(

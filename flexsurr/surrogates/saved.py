@@ -45,7 +45,7 @@ def save(surrogate: Surrogate, path: str | Path) -> None:
 def load(path: str | Path) -> Surrogate:
     """The surrogate in `path`. Raises SurrogateFileError for a damaged or foreign file, OSError for none."""
     try:
-        with np.load(path, allow_pickle=False) as file:
+        with Path(path).open("rb") as content, np.load(content, allow_pickle=False) as file:
             arrays = dict(file)
     except FileNotFoundError:
         raise

@@ -22,7 +22,7 @@ def write_checkpoint(folder: Path, belongs_to: dict[str, Any], state: dict[str, 
 def read_checkpoint(folder: Path, belongs_to: dict[str, Any]) -> dict[str, Array] | None:
     """The state in `folder`; None if there is none, or a damaged one, or one of another fit."""
     try:
-        with np.load(folder / NAME, allow_pickle=False) as file:
+        with (folder / NAME).open("rb") as content, np.load(content, allow_pickle=False) as file:
             state = dict(file)
     except (OSError, EOFError, ValueError, zipfile.BadZipFile):
         return None

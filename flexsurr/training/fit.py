@@ -50,7 +50,7 @@ class Fit:
 def fit(trial: Trial, dataset: Dataset, folder: str | Path, report: Report | None = None) -> Fit:
     """Fit a surrogate to `dataset`, resuming from the checkpoint of the same trial and dataset in `folder`.
 
-    Ends after the trial's epochs, when validation has not improved for `patience` of them, after
+    Ends after the trial's epochs, when validation has not improved by 1 % over `patience` of them, after
     `time_limit_s`, or when the optimiser has nothing left to do, and keeps the weights that validated
     best. `report(epoch, train_loss, validation_loss, wall_s)` is called after each epoch. A loss that is
     not finite ends the fit as failed, and a fit of which no epoch validates better than its start has
@@ -105,7 +105,7 @@ def fit(trial: Trial, dataset: Dataset, folder: str | Path, report: Report | Non
 
 
 def _at_end(trial: Trial, progress: Progress, optimiser: Optimiser) -> bool:
-    stalled = trial.patience is not None and progress.epoch - progress.best_epoch >= trial.patience
+    stalled = trial.patience is not None and progress.stalled_for >= trial.patience
     late = trial.time_limit_s is not None and progress.wall_s >= trial.time_limit_s
     return bool(progress.epoch >= trial.epochs or stalled or late or optimiser.finished)
 

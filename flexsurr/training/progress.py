@@ -7,22 +7,33 @@ import pandas as pd
 
 from flexsurr.simulation.rhs import Array
 
+WORTH_WAITING_FOR = 0.01
 COLUMNS = ("epoch", "wall_s", "train_loss", "validation_loss")
 
 
 @dataclass
 class Progress:
-    """Rows of COLUMNS, and the weights with the least validation loss; those of epoch 0 at first."""
+    """Rows of COLUMNS, and the weights with the least validation loss; those of epoch 0 at first.
+
+    The mark is the last validation loss that was lower by `WORTH_WAITING_FOR` than the mark before it.
+    """
 
     best_loss: float
     best_parameters: Array
     best_epoch: int = 0
+    mark_loss: float = np.inf
+    mark_epoch: int = 0
     rows: list[tuple[float, float, float, float]] = field(default_factory=list)
 
     @property
     def epoch(self) -> int:
         """Number of epochs done."""
         return len(self.rows)
+
+    @property
+    def stalled_for(self) -> int:
+        """Number of epochs since validation has last improved by an amount worth waiting for."""
+        return self.epoch - self.mark_epoch
 
     @property
     def wall_s(self) -> float:
@@ -35,6 +46,8 @@ class Progress:
         if validation_loss < self.best_loss:
             self.best_epoch, self.best_loss = self.epoch, validation_loss
             self.best_parameters = parameters.astype(np.float64)
+        if validation_loss < (1.0 - WORTH_WAITING_FOR) * self.mark_loss:
+            self.mark_epoch, self.mark_loss = self.epoch, validation_loss
 
     def history(self) -> pd.DataFrame:
         """A row an epoch: epoch, wall_s, train_loss, validation_loss (nmse)."""
@@ -47,6 +60,8 @@ class Progress:
             "rows": np.array(self.rows).reshape(-1, len(COLUMNS)),
             "best_epoch": np.array(self.best_epoch),
             "best_loss": np.array(self.best_loss),
+            "mark_epoch": np.array(self.mark_epoch),
+            "mark_loss": np.array(self.mark_loss),
             "best_parameters": self.best_parameters,
         }
 
@@ -57,5 +72,7 @@ class Progress:
             best_loss=float(state["best_loss"]),
             best_parameters=state["best_parameters"],
             best_epoch=int(state["best_epoch"]),
+            mark_loss=float(state["mark_loss"]),
+            mark_epoch=int(state["mark_epoch"]),
             rows=[tuple(row) for row in state["rows"].tolist()],
         )
