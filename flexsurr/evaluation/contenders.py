@@ -8,7 +8,7 @@ from flexsurr.beam import Implementation, ModalBasis, reduced_order
 from flexsurr.config.study import Variant
 from flexsurr.evaluation.cases import Case, under
 from flexsurr.simulation.rhs import Array, Model
-from flexsurr.surrogates import compiled
+from flexsurr.surrogates import Network, compiled
 
 Form = Literal["described", "numpy", "compiled", "torch"]
 """How a model is computed: as the reference models are, or by torch's autograd."""
@@ -41,7 +41,7 @@ def contenders(
 ) -> list[Contender]:
     """The reduced model described, numpy and compiled; each surrogate numpy, compiled and, on request, torch.
 
-    `surrogates` maps an architecture's name to its fitted surrogate. A polynomial has no torch form.
+    `surrogates` maps an architecture's name to its fitted surrogate. Only networks have a torch form.
     """
     found = []
     for implementation in get_args(Implementation):
@@ -51,7 +51,7 @@ def contenders(
         own_energy = getattr(surrogate, "energy", None)
         found.append(Contender(name, "numpy", surrogate, own_energy))
         found.append(Contender(name, "compiled", compiled(surrogate), own_energy))
-        if with_torch and name != "polynomial":
+        if with_torch and isinstance(surrogate, Network):
             # torch takes seconds to import, and nothing else here needs it
             from flexsurr.training import torch_model
 

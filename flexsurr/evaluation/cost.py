@@ -22,10 +22,8 @@ from flexsurr.simulation.rhs import Array, Model
 
 log = logging.getLogger(__name__)
 
-# What interprets Python at every call takes seconds a simulation: these run the first few simulations only.
-SLOW_IMPLEMENTATIONS = ("described", "torch")
-
-# Where Python steps, a simulation takes so many calls that one run of it is a steady measure.
+# SciPy's solvers step in Python: a second a simulation at best, half a minute with the described model.
+# So many calls are a steady measure by themselves, and the first few simulations have to do.
 STEPS_IN_PYTHON = "scipy_"
 
 
@@ -38,12 +36,16 @@ class Setup:
 
     def simulations(self, settings: EvaluationSettings) -> int:
         """How many of the study's simulations this row runs."""
-        slow = self.contender.implementation in SLOW_IMPLEMENTATIONS
-        return min(settings.described_simulations, settings.simulations) if slow else settings.simulations
+        few = min(settings.described_simulations, settings.simulations)
+        return few if self._steps_in_python else settings.simulations
 
     def repeats(self, settings: EvaluationSettings) -> int:
         """How often each simulation is timed."""
-        return 1 if self.integrator.method.startswith(STEPS_IN_PYTHON) else settings.repeats
+        return 1 if self._steps_in_python else settings.repeats
+
+    @property
+    def _steps_in_python(self) -> bool:
+        return self.integrator.method.startswith(STEPS_IN_PYTHON)
 
 
 def cost_table(
@@ -93,9 +95,10 @@ def measurements(
     t = sample_times(settings.duration_s, settings.output_step_s)
     cases = evaluation_cases(basis, study, response)
     references = list(reference_solutions(basis, variant, cases, t))
+    models = contenders(basis, variant, surrogates, with_torch=True)
     rows = []
     with one_thread():
-        for setup in setups(contenders(basis, variant, surrogates, with_torch=True), settings.integrators):
+        for setup in setups(models, settings.integrators):
             timed = [
                 _measure(setup, basis, variant, reference, setup.repeats(settings))
                 for reference in references[: setup.simulations(settings)]
