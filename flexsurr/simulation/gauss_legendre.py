@@ -12,143 +12,117 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from flexsurr.simulation.collocation import collocation_matrix, lagrange
-from flexsurr.simulation.dimension import Dimension, states
+from flexsurr.simulation.dimension import Dimension
 from flexsurr.simulation.fixed_step import implements_advance
 from flexsurr.simulation.outcome import NOT_CONVERGED, NOT_FINITE
 from flexsurr.simulation.rhs import rhs
+from flexsurr.simulation.tableaus import GAUSS_LEGENDRE_4, GAUSS_LEGENDRE_6
+from flexsurr.simulation.unrolled import (
+    gauss_legendre_4_extrapolate,
+    gauss_legendre_4_increment,
+    gauss_legendre_4_sweep,
+    gauss_legendre_6_extrapolate,
+    gauss_legendre_6_increment,
+    gauss_legendre_6_sweep,
+)
 
 _MOST_SWEEPS = 60
+_GOES_ON, _CONVERGED = range(2)
+
 # Changes of the stages relative to the state: below the first nothing is left to gain, below the second a
 # change that no longer shrinks is rounding.
 _NEGLIGIBLE = 1e-17
 _ROUNDING = 1e-13
+_LARGEST = 1e3  # a change that grows beyond this will not come back
 
-
-def _coefficients(stages: int) -> tuple[np.ndarray, ...]:
-    """Nodes c, matrix A and weights b of the method, and the extrapolation of its stages by one step."""
-    c = 0.5 + 0.5 * np.polynomial.legendre.leggauss(stages)[0]
-    return c, collocation_matrix(c, c), collocation_matrix(c, np.ones(1))[0], lagrange(c, 1.0 + c)
-
-
-_C_4, _A_4, _B_4, _EXTRAPOLATION_4 = _coefficients(2)
-_C_6, _A_6, _B_6, _EXTRAPOLATION_6 = _coefficients(3)
+_STAGES_4 = len(GAUSS_LEGENDRE_4.c)
+_STAGES_6 = len(GAUSS_LEGENDRE_6.c)
+_FURTHER_ROWS = 3  # after the stages: what rounding took from the state, and scratch of a sweep (2)
 
 
 class GaussLegendre4(NamedTuple):
     """Two stages."""
 
     constant: Dimension
-    rows: int = 5
+    rows: int = _STAGES_4 + _FURTHER_ROWS
 
 
 class GaussLegendre6(NamedTuple):
     """Three stages."""
 
     constant: Dimension
-    rows: int = 7
+    rows: int = _STAGES_6 + _FURTHER_ROWS
 
 
 @implements_advance(GaussLegendre4)
 def _advance_4(method, kernel, t, h, x, scratch, work):
-    return _step(kernel, t, h, x, scratch, work, method.constant, _C_4, _A_4, _B_4, _EXTRAPOLATION_4)
+    constant = method.constant
+    lost = scratch[_STAGES_4]
+    y = scratch[_STAGES_4 + 1]
+    new = scratch[_STAGES_4 + 2]
+    evaluations = 0
+    if scratch[0, 0] == scratch[0, 0]:
+        gauss_legendre_4_extrapolate(x, scratch, constant)
+    else:
+        evaluations = _begin(kernel, t, x, scratch, work, _STAGES_4)
+    previous = np.inf
+    for _ in range(_MOST_SWEEPS):
+        change = gauss_legendre_4_sweep(kernel, t, h, x, scratch, y, new, work, constant)
+        evaluations += _STAGES_4
+        verdict = _judge(change, previous)
+        if verdict == _CONVERGED:
+            gauss_legendre_4_increment(h, x, scratch, lost, constant)
+            return evaluations
+        if verdict < 0:
+            return verdict
+        previous = change
+    return -NOT_CONVERGED
 
 
 @implements_advance(GaussLegendre6)
 def _advance_6(method, kernel, t, h, x, scratch, work):
-    return _step(kernel, t, h, x, scratch, work, method.constant, _C_6, _A_6, _B_6, _EXTRAPOLATION_6)
-
-
-@njit(error_model="numpy")
-def _step(kernel, t, h, x, k, work, constant, c, a, b, extrapolation):
-    """As `advance`.
-
-    The rows of k are the stages, as many of scratch, and what rounding took from the state. On the first
-    step they are NaN.
-    """
-    stages = c.size
-    d = states(constant, x)
-    if k[0, 0] == k[0, 0]:
-        evaluations = 0
-        _extrapolate(k, d, extrapolation)
+    constant = method.constant
+    lost = scratch[_STAGES_6]
+    y = scratch[_STAGES_6 + 1]
+    new = scratch[_STAGES_6 + 2]
+    evaluations = 0
+    if scratch[0, 0] == scratch[0, 0]:
+        gauss_legendre_6_extrapolate(x, scratch, constant)
     else:
-        evaluations = 1
-        rhs(kernel, t, x, k[0], work)
-        for i in range(d):
-            k[2 * stages, i] = 0.0
-            for s in range(1, stages):
-                k[s, i] = k[0, i]
+        evaluations = _begin(kernel, t, x, scratch, work, _STAGES_6)
     previous = np.inf
     for _ in range(_MOST_SWEEPS):
-        change = _sweep(kernel, t, h, x, k, work, d, c, a)
-        evaluations += stages
-        if change != change:
-            return -NOT_CONVERGED if np.isfinite(previous) else -NOT_FINITE
-        if _has_converged(change, previous):
-            _add_increment(x, h, k, d, b)
+        change = gauss_legendre_6_sweep(kernel, t, h, x, scratch, y, new, work, constant)
+        evaluations += _STAGES_6
+        verdict = _judge(change, previous)
+        if verdict == _CONVERGED:
+            gauss_legendre_6_increment(h, x, scratch, lost, constant)
             return evaluations
+        if verdict < 0:
+            return verdict
         previous = change
     return -NOT_CONVERGED
 
 
 @njit(error_model="numpy")
-def _extrapolate(k, d, extrapolation):
-    """Continue the last step's stages into the next one."""
-    stages = extrapolation.shape[0]
-    for i in range(d):
-        for s in range(stages):
-            value = 0.0
-            for j in range(stages):
-                value += extrapolation[s, j] * k[j, i]
-            k[stages + s, i] = value
-        for s in range(stages):
-            k[s, i] = k[stages + s, i]
+def _begin(kernel, t, x, k, work, stages):
+    """On the first step, which finds NaN in its scratch, start every stage from f(t, x)."""
+    rhs(kernel, t, x, k[0], work)
+    for i in range(x.size):
+        for s in range(1, stages):
+            k[s, i] = k[0, i]
+        k[stages, i] = 0.0
+    return 1
 
 
 @njit(error_model="numpy")
-def _sweep(kernel, t, h, x, k, work, d, c, a):
-    """One iteration over the stages, each from the newest others; the largest relative change."""
-    stages = c.size
-    y = k[stages]
-    new = k[stages + 1]
-    largest = 0.0
-    for s in range(stages):
-        for i in range(d):
-            total = 0.0
-            for j in range(stages):
-                total += a[s, j] * k[j, i]
-            y[i] = x[i] + h * total
-        rhs(kernel, t + c[s] * h, y, new, work)
-        for i in range(d):
-            change = h * abs(new[i] - k[s, i])
-            scale = abs(x[i]) + h * abs(new[i])
-            if change > largest * scale:
-                largest = change / scale
-            elif change != change:
-                return np.nan
-            k[s, i] = new[i]
-    return largest
-
-
-@njit(error_model="numpy")
-def _has_converged(change, previous):
-    """Whether the stages are exact to rounding, from the last two changes of the iteration."""
-    if change >= previous or not np.isfinite(previous):
-        return change < _ROUNDING
-    rate = change / previous
-    return change * rate <= _NEGLIGIBLE * (1.0 - rate)
-
-
-@njit(error_model="numpy")
-def _add_increment(x, h, k, d, b):
-    """Add h Σ b_s k_s to x, keeping what rounding loses for the next time (Kahan's summation)."""
-    stages = b.size
-    lost = k[2 * stages]
-    for i in range(d):
-        total = 0.0
-        for s in range(stages):
-            total += b[s] * k[s, i]
-        total = h * total + lost[i]
-        new = x[i] + total
-        lost[i] = (x[i] - new) + total
-        x[i] = new
+def _judge(change, previous):
+    """What two successive changes say of the iteration: converged to rounding, going on, or −status."""
+    if change != change:
+        return -NOT_CONVERGED if np.isfinite(previous) else -NOT_FINITE
+    if change >= previous:
+        return _CONVERGED if change < _ROUNDING else (-NOT_CONVERGED if change > _LARGEST else _GOES_ON)
+    # what is left: the change times the rate of convergence over one minus it
+    if np.isfinite(previous) and change * change <= _NEGLIGIBLE * (previous - change):
+        return _CONVERGED
+    return _GOES_ON

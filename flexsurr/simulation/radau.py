@@ -9,7 +9,6 @@ section IV.8; the numbers of equations below are theirs.
 import numpy as np
 from numba import njit
 
-from flexsurr.simulation.collocation import collocation_matrix
 from flexsurr.simulation.dimension import ORDERED
 from flexsurr.simulation.fixed_step import all_finite
 from flexsurr.simulation.jacobian import jacobian
@@ -20,7 +19,9 @@ from flexsurr.simulation.step_control import first_step, smallest_step
 
 _STAGES = 3
 _C = np.array([(4 - np.sqrt(6)) / 10, (4 + np.sqrt(6)) / 10, 1.0])
-_A_INVERSE = np.linalg.inv(collocation_matrix(_C, _C))
+_POWERS = np.arange(1, _STAGES + 1)
+# The stages' increments z_i = Σ_k a_k c_i^k have the slopes h f_i = Σ_k k a_k c_i^(k−1): A⁻¹ maps z to h f.
+_A_INVERSE = _POWERS * _C[:, None] ** (_POWERS - 1) @ np.linalg.inv(_C[:, None] ** _POWERS)
 _EIGENVALUES, _VECTORS = np.linalg.eig(_A_INVERSE)
 _REAL = int(np.argmin(abs(_EIGENVALUES.imag)))
 _COMPLEX = int(np.argmax(_EIGENVALUES.imag))  # the third is its conjugate

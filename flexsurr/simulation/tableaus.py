@@ -1,4 +1,4 @@
-"""Coefficients of the explicit Runge–Kutta methods, as data.
+"""Coefficients of the Runge–Kutta methods whose stages are unrolled, as data.
 
 Rows map the number of a stage to its coefficient; absent entries are zero.
 
@@ -7,6 +7,7 @@ Source of DOP853: E. Hairer, S. P. Nørsett, G. Wanner, *Solving Ordinary Differ
 lower-order formulae and its dense output of order 7.
 """
 
+from math import sqrt
 from typing import NamedTuple
 
 Row = dict[int, float]
@@ -14,6 +15,14 @@ Row = dict[int, float]
 
 class ExplicitTableau(NamedTuple):
     """k_s = f(t + c_s h, x + h Σ_j a_sj k_j), x_new = x + h Σ_s b_s k_s."""
+
+    c: tuple[float, ...]
+    a: tuple[Row, ...]
+    b: Row
+
+
+class ImplicitTableau(NamedTuple):
+    """The same equations with every stage in every row."""
 
     c: tuple[float, ...]
     a: tuple[Row, ...]
@@ -38,6 +47,27 @@ RK4 = ExplicitTableau(
     c=(0.0, 0.5, 0.5, 1.0),
     a=({}, {0: 0.5}, {1: 0.5}, {2: 1.0}),
     b={0: 1 / 6, 1: 1 / 3, 2: 1 / 3, 3: 1 / 6},
+)
+
+# Gauss–Legendre collocation: E. Hairer, C. Lubich, G. Wanner, *Geometric Numerical Integration*, 2nd ed.,
+# Springer 2006, table II.1.1.
+_ROOT_3 = sqrt(3)
+_ROOT_15 = sqrt(15)
+
+GAUSS_LEGENDRE_4 = ImplicitTableau(
+    c=(1 / 2 - _ROOT_3 / 6, 1 / 2 + _ROOT_3 / 6),
+    a=({0: 1 / 4, 1: 1 / 4 - _ROOT_3 / 6}, {0: 1 / 4 + _ROOT_3 / 6, 1: 1 / 4}),
+    b={0: 1 / 2, 1: 1 / 2},
+)
+
+GAUSS_LEGENDRE_6 = ImplicitTableau(
+    c=(1 / 2 - _ROOT_15 / 10, 1 / 2, 1 / 2 + _ROOT_15 / 10),
+    a=(
+        {0: 5 / 36, 1: 2 / 9 - _ROOT_15 / 15, 2: 5 / 36 - _ROOT_15 / 30},
+        {0: 5 / 36 + _ROOT_15 / 24, 1: 2 / 9, 2: 5 / 36 - _ROOT_15 / 24},
+        {0: 5 / 36 + _ROOT_15 / 30, 1: 2 / 9 + _ROOT_15 / 15, 2: 5 / 36},
+    ),
+    b={0: 5 / 18, 1: 4 / 9, 2: 5 / 18},
 )
 
 DOP853 = EmbeddedTableau(

@@ -1,4 +1,4 @@
-"""Write `unrolled.py`: the explicit methods with their stages unrolled.
+"""Write `unrolled.py`: Runge–Kutta methods with their stages unrolled.
 
 A loop over a tableau costs three times as much as its stages written out, because zero coefficients
 are multiplied and the compiler cannot see across stages. Numba keeps machine code on disk only for
@@ -9,16 +9,26 @@ functions that stand in a file, so the file is written once, by
 and kept with the sources; a test compares it with what this module writes.
 """
 
+from math import prod
 from pathlib import Path
 
-from flexsurr.simulation.tableaus import DOP853, RK4, EmbeddedTableau, ExplicitTableau, Row
+from flexsurr.simulation.tableaus import (
+    DOP853,
+    GAUSS_LEGENDRE_4,
+    GAUSS_LEGENDRE_6,
+    RK4,
+    EmbeddedTableau,
+    ExplicitTableau,
+    ImplicitTableau,
+    Row,
+)
 
 DESTINATION = Path(__file__).with_name("unrolled.py")
 
-_HEAD = '''"""Explicit Runge–Kutta methods, stages unrolled. Written by unroll.py: do not edit.
+_HEAD = '''"""Runge–Kutta methods, stages unrolled. Written by unroll.py: do not edit.
 
-All of them: kernel, time t [s], step h [s], state x (d,), stages k (stages, d) whose first row already
-holds f(t, x), scratch y (d,), the kernel's workspace, and the number d as a constant.
+All of them: kernel, time t [s], step h [s], state x (d,), stages k (stages, d), scratch y (d,), the
+kernel's workspace, and the number d as a constant. Explicit methods find f(t, x) in the first row of k.
 """
 
 # ruff: noqa: E501 (one sum of a tableau's row is one line)
@@ -29,7 +39,9 @@ from flexsurr.simulation.dimension import ORDERED, states
 from flexsurr.simulation.rhs import rhs
 '''
 
+# Without reference counts, which functions that do not allocate can spare: they cost more than the sums.
 _DECORATOR = '@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)'
+_EXACT = '@njit(error_model="numpy", _nrt=False)'
 
 
 def _sum(row: Row, scale: str = "") -> str:
@@ -43,9 +55,9 @@ def _sum(row: Row, scale: str = "") -> str:
     )
 
 
-def _function(name: str, arguments: str, docstring: str, body: list[str]) -> str:
+def _function(name: str, arguments: str, docstring: str, body: list[str], decorator: str = _DECORATOR) -> str:
     lines = [
-        _DECORATOR,
+        decorator,
         f"def {name}({arguments}):",
         f'    """{docstring}"""',
         *(f"    {line}" for line in body),
@@ -130,6 +142,79 @@ def _dense(name: str, tableau: EmbeddedTableau) -> str:
     )
 
 
+def _extrapolation(tableau: ImplicitTableau) -> list[Row]:
+    """Weights that continue the polynomial through a step's stages to those of the next step."""
+    rows = []
+    for node in tableau.c:
+        row = {}
+        for j, own in enumerate(tableau.c):
+            others = [c for n, c in enumerate(tableau.c) if n != j]
+            row[j] = prod(1.0 + node - c for c in others) / prod(own - c for c in others)
+        rows.append(row)
+    return rows
+
+
+def _extrapolate(name: str, tableau: ImplicitTableau) -> str:
+    count = len(tableau.c)
+    body = [
+        *_names(range(count)),
+        "for i in range(d):",
+        *(f"    new{s} ={_sum(row)}" for s, row in enumerate(_extrapolation(tableau))),
+        *(f"    k{s}[i] = new{s}" for s in range(count)),
+    ]
+    return _function(name, "x, k, constant", "Replace the last step's stages by a guess of the next's.", body)
+
+
+def _sweep(name: str, tableau: ImplicitTableau) -> str:
+    body = [*_names(range(len(tableau.c))), "largest = 0.0", "poison = 0.0"]
+    for number, (node, row) in enumerate(zip(tableau.c, tableau.a, strict=True)):
+        body += [
+            "for i in range(d):",
+            f"    y[i] = x[i]{_sum(row, 'h')}",
+            f"rhs(kernel, t + {node!r} * h, y, new, work)",
+            "for i in range(d):",
+            f"    change = h * abs(new[i] - k{number}[i])",
+            "    scale = abs(x[i]) + h * abs(new[i])",
+            "    if change > largest * scale:",
+            "        largest = change / scale",
+            "    poison += 0.0 * change",
+            f"    k{number}[i] = new[i]",
+        ]
+    body.append("return largest + poison")
+    return _function(
+        name,
+        "kernel, t, h, x, k, y, new, work, constant",
+        "Evaluate each stage from the newest others; the largest change relative to the state, or NaN.",
+        body,
+    )
+
+
+def _increment(name: str, tableau: ImplicitTableau) -> str:
+    body = [
+        *_names(range(len(tableau.c))),
+        "for i in range(d):",
+        f"    total = lost[i]{_sum(tableau.b, 'h')}",
+        "    before = x[i]",
+        "    x[i] = before + total",
+        "    lost[i] = (before - x[i]) + total",
+    ]
+    return _function(
+        name,
+        "h, x, k, lost, constant",
+        "Add the step to x and keep what rounding loses for the next (Kahan's summation).",
+        body,
+        _EXACT,
+    )
+
+
+def _collocation(name: str, tableau: ImplicitTableau) -> list[str]:
+    return [
+        _extrapolate(f"{name}_extrapolate", tableau),
+        _sweep(f"{name}_sweep", tableau),
+        _increment(f"{name}_increment", tableau),
+    ]
+
+
 def source() -> str:
     """The text of `unrolled.py`."""
     return "\n\n".join(
@@ -139,6 +224,8 @@ def source() -> str:
             _step("dop853_step", DOP853.method),
             _error("dop853_error", DOP853),
             _dense("dop853_dense", DOP853),
+            *_collocation("gauss_legendre_4", GAUSS_LEGENDRE_4),
+            *_collocation("gauss_legendre_6", GAUSS_LEGENDRE_6),
         ]
     )
 

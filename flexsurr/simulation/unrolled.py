@@ -1,7 +1,7 @@
-"""Explicit Runge–Kutta methods, stages unrolled. Written by unroll.py: do not edit.
+"""Runge–Kutta methods, stages unrolled. Written by unroll.py: do not edit.
 
-All of them: kernel, time t [s], step h [s], state x (d,), stages k (stages, d) whose first row already
-holds f(t, x), scratch y (d,), the kernel's workspace, and the number d as a constant.
+All of them: kernel, time t [s], step h [s], state x (d,), stages k (stages, d), scratch y (d,), the
+kernel's workspace, and the number d as a constant. Explicit methods find f(t, x) in the first row of k.
 """
 
 # ruff: noqa: E501 (one sum of a tableau's row is one line)
@@ -142,3 +142,132 @@ def dop853_dense(kernel, t, h, x, x_new, dense, k, y, work, constant):
         dense[4, i] = h * ( + 10.427508642579134 * k0[i] + 242.28349177525817 * k5[i] + 165.20045171727028 * k6[i] - 374.5467547226902 * k7[i] - 22.113666853125306 * k8[i] + 7.733432668472264 * k9[i] - 30.674084731089398 * k10[i] - 9.332130526430229 * k11[i] + 15.697238121770845 * k12[i] - 31.139403219565178 * k13[i] - 9.35292435884448 * k14[i] + 35.81684148639408 * k15[i])
         dense[5, i] = h * ( + 19.985053242002433 * k0[i] - 387.0373087493518 * k5[i] - 189.17813819516758 * k6[i] + 527.8081592054236 * k7[i] - 11.57390253995963 * k8[i] + 6.8812326946963 * k9[i] - 1.0006050966910838 * k10[i] + 0.7777137798053443 * k11[i] - 2.778205752353508 * k12[i] - 60.19669523126412 * k13[i] + 84.32040550667716 * k14[i] + 11.99229113618279 * k15[i])
         dense[6, i] = h * ( - 25.69393346270375 * k0[i] - 154.18974869023643 * k5[i] - 231.5293791760455 * k6[i] + 357.6391179106141 * k7[i] + 93.40532418362432 * k8[i] - 37.45832313645163 * k9[i] + 104.0996495089623 * k10[i] + 29.8402934266605 * k11[i] - 43.53345659001114 * k12[i] + 96.32455395918828 * k13[i] - 39.17726167561544 * k14[i] - 149.72683625798564 * k15[i])
+
+
+@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)
+def gauss_legendre_4_extrapolate(x, k, constant):
+    """Replace the last step's stages by a guess of the next's."""
+    d = states(constant, x)
+    k0 = k[0]
+    k1 = k[1]
+    for i in range(d):
+        new0 = - 0.7320508075688774 * k0[i] + 1.7320508075688774 * k1[i]
+        new1 = - 1.7320508075688774 * k0[i] + 2.732050807568877 * k1[i]
+        k0[i] = new0
+        k1[i] = new1
+
+
+@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)
+def gauss_legendre_4_sweep(kernel, t, h, x, k, y, new, work, constant):
+    """Evaluate each stage from the newest others; the largest change relative to the state, or NaN."""
+    d = states(constant, x)
+    k0 = k[0]
+    k1 = k[1]
+    largest = 0.0
+    poison = 0.0
+    for i in range(d):
+        y[i] = x[i] + (h * 0.25) * k0[i] - (h * 0.038675134594812866) * k1[i]
+    rhs(kernel, t + 0.21132486540518713 * h, y, new, work)
+    for i in range(d):
+        change = h * abs(new[i] - k0[i])
+        scale = abs(x[i]) + h * abs(new[i])
+        if change > largest * scale:
+            largest = change / scale
+        poison += 0.0 * change
+        k0[i] = new[i]
+    for i in range(d):
+        y[i] = x[i] + (h * 0.5386751345948129) * k0[i] + (h * 0.25) * k1[i]
+    rhs(kernel, t + 0.7886751345948129 * h, y, new, work)
+    for i in range(d):
+        change = h * abs(new[i] - k1[i])
+        scale = abs(x[i]) + h * abs(new[i])
+        if change > largest * scale:
+            largest = change / scale
+        poison += 0.0 * change
+        k1[i] = new[i]
+    return largest + poison
+
+
+@njit(error_model="numpy", _nrt=False)
+def gauss_legendre_4_increment(h, x, k, lost, constant):
+    """Add the step to x and keep what rounding loses for the next (Kahan's summation)."""
+    d = states(constant, x)
+    k0 = k[0]
+    k1 = k[1]
+    for i in range(d):
+        total = lost[i] + (h * 0.5) * k0[i] + (h * 0.5) * k1[i]
+        before = x[i]
+        x[i] = before + total
+        lost[i] = (before - x[i]) + total
+
+
+@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)
+def gauss_legendre_6_extrapolate(x, k, constant):
+    """Replace the last step's stages by a guess of the next's."""
+    d = states(constant, x)
+    k0 = k[0]
+    k1 = k[1]
+    k2 = k[2]
+    for i in range(d):
+        new0 = + 0.4603499871259163 * k0[i] - 1.5026888717234437 * k1[i] + 2.042338884597527 * k2[i]
+        new1 = + 2.042338884597527 * k0[i] - 5.666666666666666 * k1[i] + 4.624327782069138 * k2[i]
+        new2 = + 4.624327782069138 * k0[i] - 11.830644461609888 * k1[i] + 8.206316679540748 * k2[i]
+        k0[i] = new0
+        k1[i] = new1
+        k2[i] = new2
+
+
+@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)
+def gauss_legendre_6_sweep(kernel, t, h, x, k, y, new, work, constant):
+    """Evaluate each stage from the newest others; the largest change relative to the state, or NaN."""
+    d = states(constant, x)
+    k0 = k[0]
+    k1 = k[1]
+    k2 = k[2]
+    largest = 0.0
+    poison = 0.0
+    for i in range(d):
+        y[i] = x[i] + (h * 0.1388888888888889) * k0[i] - (h * 0.03597666752493894) * k1[i] + (h * 0.009789444015308318) * k2[i]
+    rhs(kernel, t + 0.1127016653792583 * h, y, new, work)
+    for i in range(d):
+        change = h * abs(new[i] - k0[i])
+        scale = abs(x[i]) + h * abs(new[i])
+        if change > largest * scale:
+            largest = change / scale
+        poison += 0.0 * change
+        k0[i] = new[i]
+    for i in range(d):
+        y[i] = x[i] + (h * 0.3002631949808646) * k0[i] + (h * 0.2222222222222222) * k1[i] - (h * 0.022485417203086805) * k2[i]
+    rhs(kernel, t + 0.5 * h, y, new, work)
+    for i in range(d):
+        change = h * abs(new[i] - k1[i])
+        scale = abs(x[i]) + h * abs(new[i])
+        if change > largest * scale:
+            largest = change / scale
+        poison += 0.0 * change
+        k1[i] = new[i]
+    for i in range(d):
+        y[i] = x[i] + (h * 0.26798833376246944) * k0[i] + (h * 0.48042111196938336) * k1[i] + (h * 0.1388888888888889) * k2[i]
+    rhs(kernel, t + 0.8872983346207417 * h, y, new, work)
+    for i in range(d):
+        change = h * abs(new[i] - k2[i])
+        scale = abs(x[i]) + h * abs(new[i])
+        if change > largest * scale:
+            largest = change / scale
+        poison += 0.0 * change
+        k2[i] = new[i]
+    return largest + poison
+
+
+@njit(error_model="numpy", _nrt=False)
+def gauss_legendre_6_increment(h, x, k, lost, constant):
+    """Add the step to x and keep what rounding loses for the next (Kahan's summation)."""
+    d = states(constant, x)
+    k0 = k[0]
+    k1 = k[1]
+    k2 = k[2]
+    for i in range(d):
+        total = lost[i] + (h * 0.2777777777777778) * k0[i] + (h * 0.4444444444444444) * k1[i] + (h * 0.2777777777777778) * k2[i]
+        before = x[i]
+        x[i] = before + total
+        lost[i] = (before - x[i]) + total

@@ -7,10 +7,9 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 from scipy.integrate._ivp import dop853_coefficients as published
 
-from flexsurr.simulation import unroll
-from flexsurr.simulation.collocation import collocation_matrix, lagrange
+from flexsurr.simulation import radau, unroll
 from flexsurr.simulation.linear_solver import factorise, solve
-from flexsurr.simulation.tableaus import DOP853, RK4
+from flexsurr.simulation.tableaus import DOP853, GAUSS_LEGENDRE_4, GAUSS_LEGENDRE_6, RK4
 
 
 def dense_row(row, size):
@@ -38,12 +37,13 @@ def test_the_unrolled_methods_are_those_of_the_tableaus():
     assert unroll.DESTINATION.read_text(encoding="utf-8") == unroll.source()
 
 
-@pytest.mark.parametrize("stages", [1, 2, 3])
-def test_gauss_legendre_coefficients(stages):
+@pytest.mark.parametrize("tableau", [GAUSS_LEGENDRE_4, GAUSS_LEGENDRE_6])
+def test_gauss_legendre_coefficients(tableau):
     """Simplifying assumptions B(2s) and C(s), and the condition of symplecticity."""
-    nodes = 0.5 + 0.5 * np.polynomial.legendre.leggauss(stages)[0]
-    a = collocation_matrix(nodes, nodes)
-    b = collocation_matrix(nodes, np.ones(1))[0]
+    stages = len(tableau.c)
+    nodes = np.array(tableau.c)
+    a = np.array([dense_row(row, stages) for row in tableau.a])
+    b = dense_row(tableau.b, stages)
     for k in range(1, 2 * stages + 1):
         assert b @ nodes ** (k - 1) == pytest.approx(1 / k, abs=1e-15)
     for k in range(1, stages + 1):
@@ -52,10 +52,20 @@ def test_gauss_legendre_coefficients(stages):
     assert product + product.T == pytest.approx(np.outer(b, b), abs=1e-15)
 
 
-@given(st.floats(-2.0, 2.0))
-def test_lagrange_reproduces_polynomials(theta):
-    nodes = np.array([0.1, 0.4, 0.9])
-    assert lagrange(nodes, np.array([theta]))[0] @ nodes**2 == pytest.approx(theta**2, abs=1e-12)
+def test_radau_is_the_published_method():
+    """A⁻¹'s eigenvalues and the stages' matrix."""
+    root = np.sqrt(6)
+    a = np.array(
+        [
+            [(88 - 7 * root) / 360, (296 - 169 * root) / 1800, (-2 + 3 * root) / 225],
+            [(296 + 169 * root) / 1800, (88 + 7 * root) / 360, (-2 - 3 * root) / 225],
+            [(16 - root) / 36, (16 + root) / 36, 1 / 9],
+        ]
+    )
+    assert np.linalg.inv(radau._A_INVERSE) == pytest.approx(a, abs=1e-14)
+    eigenvalues = [radau._MU_REAL, radau._MU_COMPLEX.real]
+    published = [3 + 3 ** (2 / 3) - 3 ** (1 / 3), 3 + 0.5 * (3 ** (1 / 3) - 3 ** (2 / 3))]
+    assert eigenvalues == pytest.approx(published, abs=1e-13)
 
 
 @pytest.mark.parametrize("dtype", [np.float64, np.complex128])
