@@ -19,6 +19,7 @@ from flexsurr.simulation import rhs
 
 CANTILEVER = Path(__file__).parents[1] / "config/structures/cantilever.yaml"
 COMPILED_CALLS = 2000
+LOAD = SineTipForce(10.0, 50.0)
 DESCRIBED, NUMPY, COMPILED = KINDS = ("described", "numpy", "compiled")
 
 
@@ -71,10 +72,9 @@ def main() -> None:
         label = f"{name}, N = {structure.elements}, r = {modes}"
         for variant, term in (("as_printed", "term dropped"), ("hamiltonian", "term kept")):
             show(f"{label}, {term}", lambda k, b=basis, v=variant: reduced_order(b, v, k), repeats)
-        load = SineTipForce(10.0, 50.0)
         show(
             f"{label}, term kept, tip load",
-            lambda k, b=basis: loaded(reduced_order(b, "hamiltonian", k), b, load, k),
+            lambda k, b=basis: loaded(reduced_order(b, "hamiltonian", k), b, LOAD, k),
             repeats,
         )
         show(

@@ -14,6 +14,8 @@ from flexsurr.config.structure import Joint, Structure
 from flexsurr.simulation.rhs import Array
 
 _STEP = 1e-30
+AXIS: dict[Joint, tuple[int, float]] = {"in_plane": (2, 1.0), "out_of_plane": (1, -1.0), "torsion": (0, 1.0)}
+"""The column of the frame about which a joint turns, and its sense."""
 
 
 def joint_rotation(joint: Joint, angle: complex) -> Array:
@@ -40,10 +42,11 @@ def points(structure: Structure, q: Array) -> tuple[list[Array], list[Array], Ar
                 stretch = block[i]
             else:
                 frame = frame @ joint_rotation(joint, block[i])
-        centre = node + frame @ np.array([0.5 * beam.element_length + stretch, 0.0, 0.0])
-        masses.append(centre + frame @ np.array([0.0, beam.offset, 0.0]))
+        x_axis, y_axis = frame[:, 0], frame[:, 1]
+        centre = node + (0.5 * beam.element_length + stretch) * x_axis
+        masses.append(centre + beam.offset * y_axis)
         centres.append(centre)
-        node = node + frame @ np.array([beam.element_length + stretch, 0.0, 0.0])
+        node = node + (beam.element_length + stretch) * x_axis
     return masses, centres, node
 
 
@@ -77,7 +80,6 @@ def velocities(structure: Structure, q: Array, rates: Array) -> list[Array]:
     blocks = dict(zip(joints, np.split(q, len(joints)), strict=True))
     rate_blocks = dict(zip(joints, np.split(rates, len(joints)), strict=True))
     frame, turning, node_velocity = beam.clamp, np.zeros(3), np.zeros(3)
-    spins = {"in_plane": (0.0, 0.0, 1.0), "out_of_plane": (0.0, -1.0, 0.0), "torsion": (1.0, 0.0, 0.0)}
     found = []
     for i in range(structure.elements):
         stretch, stretching = 0.0, 0.0
@@ -85,13 +87,14 @@ def velocities(structure: Structure, q: Array, rates: Array) -> list[Array]:
             if joint == "axial":
                 stretch, stretching = blocks[joint][i], rate_blocks[joint][i]
             else:
-                turning = turning + frame @ np.array(spins[joint]) * rate_blocks[joint][i]
+                column, sense = AXIS[joint]
+                turning = turning + sense * rate_blocks[joint][i] * frame[:, column]
                 frame = frame @ joint_rotation(joint, blocks[joint][i])
-        along = frame @ np.array([stretching, 0.0, 0.0])
-        to_mass = frame @ np.array([0.5 * beam.element_length + stretch, beam.offset, 0.0])
-        to_node = frame @ np.array([beam.element_length + stretch, 0.0, 0.0])
-        found.append(node_velocity + cross(turning, to_mass) + along)
-        node_velocity = node_velocity + cross(turning, to_node) + along
+        x_axis, y_axis = frame[:, 0], frame[:, 1]
+        to_mass = (0.5 * beam.element_length + stretch) * x_axis + beam.offset * y_axis
+        to_node = (beam.element_length + stretch) * x_axis
+        found.append(node_velocity + cross(turning, to_mass) + stretching * x_axis)
+        node_velocity = node_velocity + cross(turning, to_node) + stretching * x_axis
     return found
 
 

@@ -75,6 +75,11 @@ class Velocities:
     roots: Array  # (..., k, N, 3) of the inboard end of each element [m/s]
     masses: Array  # (..., k, N, 3) of the lumped masses [m/s]
 
+    def combined(self, weights: Array) -> "Velocities":
+        """The velocities for the sum of the sets, each times its weight (k,)."""
+        parts = (self.spins, self.roots, self.masses)
+        return Velocities(*(np.tensordot(weights, part, 1) for part in parts))
+
 
 def velocities(beam: Chain, at: Configuration, rates: Array) -> Velocities:
     """Velocities for k sets of joint rates (..., k, n), eq. 3.
@@ -140,12 +145,12 @@ def _turns(psi: Array, theta: Array, phi: Array) -> Array:
     """(..., N, 3, 3) R_z(ψ) R_y'(θ) R_x(φ), multiplied out."""
     cz, sz, cy, sy = np.cos(psi), np.sin(psi), np.cos(theta), np.sin(theta)
     cx, sx = np.cos(phi), np.sin(phi)
-    entries = [
-        [cz * cy, -sz * cx - cz * sy * sx, sz * sx - cz * sy * cx],
-        [sz * cy, cz * cx - sz * sy * sx, -cz * sx - sz * sy * cx],
-        [sy, cy * sx, cy * cx],
-    ]
-    return np.stack([np.stack(row, axis=-1) for row in entries], axis=-2)
+    turns = np.empty((*psi.shape, 3, 3), dtype=psi.dtype)
+    turns[..., 0, 0], turns[..., 1, 0], turns[..., 2, 0] = cz * cy, sz * cy, sy
+    turns[..., 0, 1], turns[..., 0, 2] = -sz * cx - cz * sy * sx, sz * sx - cz * sy * cx
+    turns[..., 1, 1], turns[..., 1, 2] = cz * cx - sz * sy * sx, -cz * sx - sz * sy * cx
+    turns[..., 2, 1], turns[..., 2, 2] = cy * sx, cy * cx
+    return turns
 
 
 def _floating(q: Array) -> Array:

@@ -16,22 +16,20 @@ import numpy as np
 
 from flexsurr.beam.chain import Chain, chain
 from flexsurr.beam.dynamics import BeamModel
-from flexsurr.beam.kinematics import Configuration, configuration, cross, velocities
+from flexsurr.beam.kinematics import Configuration, Velocities, configuration, cross, velocities
 from flexsurr.beam.planar import Plane, plane
 from flexsurr.simulation.rhs import Array
 
 
-def gyroscopic_forces(beam: Chain, at: Configuration, rates: Array) -> Array:
-    """½ ∂/∂q (q̇ᵀ M q̇) (n,) at fixed q̇ (n,): the g_j of this file's head (eq. 6)."""
-    motion = velocities(beam, at, rates[None, :])
-    roots, root_velocities = at.nodes[:-1], motion.roots[0]
-    momenta = beam.element_mass * motion.masses[0]
+def gyroscopic_forces(beam: Chain, at: Configuration, motion: Velocities) -> Array:
+    """½ ∂/∂q (q̇ᵀ M q̇) (n,) at fixed q̇, from the velocities it gives: the g_j of this file's head (eq. 6)."""
+    momenta = beam.element_mass * motion.masses
     outboard = _sum_outboard(momenta)
-    angular = _sum_outboard(cross(at.masses, momenta)) - cross(roots, outboard)
-    spins = motion.spins[0]
-    before = np.cumsum(spins.sum(axis=0), axis=0) - spins.sum(axis=0)
-    carriers = np.stack([before, before + spins[0], before + spins[0] + spins[1]])
-    turning = cross(angular, carriers) - cross(root_velocities, outboard)
+    angular = _sum_outboard(cross(at.masses, momenta)) - cross(at.nodes[:-1], outboard)
+    psi, theta, phi = motion.spins
+    inboard = np.cumsum(psi + theta + phi, axis=0)
+    carriers = np.array([inboard - psi - theta - phi, inboard - theta - phi, inboard - phi])
+    turning = cross(angular, carriers) - cross(motion.roots, outboard)
     joints = np.concatenate(
         [
             np.sum(at.axes[:3] * turning, axis=-1).ravel(),
@@ -54,15 +52,15 @@ class VectorisedBeam(BeamModel):
         r = self.projection.coordinates
         eta, momenta = x[:r], x[r:]
         at = configuration(beam, modes @ eta)
-        jacobian = velocities(beam, at, self._directions).masses
-        columns = jacobian.reshape(r, 3 * beam.elements)
-        mass = beam.element_mass * columns @ columns.T + self.rotary_inertia
-        rates = np.linalg.solve(mass, momenta)
+        tangents = velocities(beam, at, self._directions)
+        columns = tangents.masses.reshape(r, 3 * beam.elements)
+        mass = beam.element_mass * (columns @ columns.T) + self.rotary_inertia
+        rates = np.asarray(np.linalg.solve(mass, momenta), dtype=np.float64)
         forces = -(self.projection.stiffness @ eta) - self.projection.damping @ rates
         if beam.gravity[2] != 0.0:
-            forces += beam.element_mass * jacobian.sum(axis=1) @ beam.gravity
+            forces += beam.element_mass * tangents.masses.sum(axis=1) @ beam.gravity
         if self.variant == "hamiltonian":
-            forces += modes.T @ gyroscopic_forces(beam, at, modes @ rates)
+            forces += modes.T @ gyroscopic_forces(beam, at, tangents.combined(rates))
         return np.concatenate([rates, forces])
 
 
@@ -72,6 +70,10 @@ class VectorisedPlanarBeam(BeamModel):
     @cached_property
     def _plane(self) -> Plane:
         return plane(self.projection)
+
+    @cached_property
+    def _heavy(self) -> bool:
+        return bool(np.any(self._plane.weights))
 
     def derivative(self, t: float, x: Array) -> Array:
         """ẋ (2r,) at states x (2r,)."""
@@ -86,11 +88,12 @@ class VectorisedPlanarBeam(BeamModel):
         # Without torsion there is no rotary inertia.
         rates = momenta / mass[0] if r == 1 else np.linalg.solve(mass, momenta)
         forces = -(self.projection.stiffness @ eta) - self.projection.damping @ rates
-        turning = np.einsum("aj,aj->j", normal, frame.weights)
+        if self._heavy:
+            forces += (normal[0] * frame.weights[0] + normal[1] * frame.weights[1]) @ slopes
         if self.variant == "hamiltonian":
             arms = frame.element_mass * (rates @ columns).reshape(2, -1) @ frame.levers
-            turning += (slopes @ rates) * (normal[0] * arms[1] - normal[1] * arms[0])
-        return np.concatenate([rates, forces + turning @ slopes])
+            forces += ((slopes @ rates) * (normal[0] * arms[1] - normal[1] * arms[0])) @ slopes
+        return np.concatenate([rates, forces])
 
 
 def _sum_outboard(values: Array) -> Array:

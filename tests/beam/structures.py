@@ -5,7 +5,7 @@ from itertools import combinations
 import numpy as np
 from hypothesis import strategies as st
 
-from flexsurr.beam import reduce
+from flexsurr.beam import ModalBasis, mass_matrix, reduce
 from flexsurr.config.structure import JOINTS, Structure
 from flexsurr.config.study import Reduction
 
@@ -64,9 +64,23 @@ def structures(**fixed: object) -> st.SearchStrategy[Structure]:
     return st.fixed_dictionaries(drawn).map(lambda values: change(ALL_JOINTS, **values))
 
 
-def coordinates(structure: Structure, seed: int, amplitude: float = 0.5) -> np.ndarray:
-    """Random joint coordinates q (n,)."""
-    return amplitude * np.random.default_rng(seed).uniform(-1.0, 1.0, structure.coordinates)
+def coordinates(structure: Structure, seed: int) -> np.ndarray:
+    """Random joint coordinates q (n,): large turns, stretches well within an element's length."""
+    amplitudes = [0.05 if joint == "axial" else 0.7 for joint in structure.ordered_joints]
+    random = np.random.default_rng(seed)
+    return np.repeat(amplitudes, structure.elements) * random.uniform(-1.0, 1.0, structure.coordinates)
+
+
+def state(system: Structure | ModalBasis, seed: int) -> np.ndarray:
+    """A random state (q, p) or (η, p) with rates of order one.
+
+    Momenta drawn as such would be wild where the mass matrix is near singular.
+    """
+    structure = system if isinstance(system, Structure) else system.structure
+    modes = np.eye(structure.coordinates) if isinstance(system, Structure) else system.modes
+    eta = np.linalg.lstsq(modes, coordinates(structure, seed), rcond=None)[0]
+    rates = np.linalg.lstsq(modes, coordinates(structure, seed + 1), rcond=None)[0]
+    return np.concatenate([eta, modes.T @ mass_matrix(structure, modes @ eta) @ modes @ rates])
 
 
 def basis_of(structure: Structure, modes: int = 3, normalisation: str = "mass"):
