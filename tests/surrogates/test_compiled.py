@@ -59,8 +59,8 @@ def test_only_hamiltonians_have_an_energy():
 def test_integrators_take_it():
     """A compiled Hamiltonian keeps its energy along a trajectory, to the integrator's accuracy."""
     model = compiled(HAMILTONIANS["even"])
-    t = np.linspace(0.0, 0.02, 5)
-    trajectory = simulate(model, t, np.array([0.1, 0.5]), Integrator(method="dop853", rtol=1e-11, atol=1e-12))
+    t = np.linspace(0.0, 0.02, 6)
+    trajectory = simulate(model, t, np.array([0.1, 0.5]), Integrator(method="rk4", step_s=1e-4))
     assert trajectory.completed
     energy = model.energy(trajectory.x)
     np.testing.assert_allclose(energy, energy[0], rtol=1e-9)
