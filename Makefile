@@ -47,7 +47,9 @@ ui: $(INSTALLED)
 	mlflow ui --backend-store-uri sqlite:///$(CURDIR)/results/mlflow/mlflow.db --host 127.0.0.1 --port $(PORT)
 
 benchmark: $(INSTALLED)
-	OMP_NUM_THREADS=1 python -m benchmarks
+	@for script in $$(grep -l __main__ benchmarks/*.py); do \
+		echo "== $$script"; OMP_NUM_THREADS=1 python $$script || exit 1; \
+	done
 
 # Tests look at the pages in a real browser. Debian's is fetched where there is none and we may.
 browser:
