@@ -106,9 +106,12 @@ def _panel(ax: Axes, cost: pd.DataFrame) -> None:
             zorder=3,
             clip_on=False,
         )
+        way = implementation if method == "scipy_radau" else SHORT.get(method, method)
         if of_front or _is_landmark(model, implementation, method):
-            way = implementation if method == "scipy_radau" else SHORT.get(method, method)
             labels.append((point, f"{label(model)}, {way}", colour(model)))
+        elif model == "rom":
+            # surrogates stand at the same heights or to their left: one model names the integrators
+            labels.append((point, way, colour(model)))
     _published(ax, cost)
     place_labels(
         ax,

@@ -59,7 +59,10 @@ def save_page(frame: pd.DataFrame, title: str, caption: str, path: Path) -> None
 def page(frame: pd.DataFrame, title: str, caption: str) -> str:
     """A self-contained HTML page: title, caption, table. Numbers with four digits; empty where unknown."""
     numeric = [pd.api.types.is_numeric_dtype(frame[name]) for name in frame.columns]
-    head = "".join(f"<th>{html.escape(name)}</th>" for name in frame.columns)
+    head = "".join(
+        f'<th class="{"number" if is_number else "word"}">{_heading(name)}</th>'
+        for name, is_number in zip(frame.columns, numeric, strict=True)
+    )
     rows = []
     for values in frame.itertuples(index=False):
         cells = (
@@ -79,6 +82,11 @@ def _columns(frame: pd.DataFrame, names: Sequence[str]) -> pd.DataFrame:
     if missing:
         raise KeyError(f"columns missing: {', '.join(missing)}")
     return frame[list(names)].reset_index(drop=True)
+
+
+def _heading(name: str) -> str:
+    """The column's name, which may break after an underscore."""
+    return html.escape(name).replace("_", "_<wbr>")
 
 
 def _number(value: float) -> str:
@@ -105,10 +113,10 @@ _PAGE = """<!DOCTYPE html>
 body {{ font: 14px/1.45 system-ui, sans-serif; margin: 2em; color: #1b1b1b; }}
 p {{ max-width: 60em; }}
 table {{ border-collapse: collapse; font-size: 12.5px; }}
-thead th {{ position: sticky; top: 0; background: #fff; border-bottom: 1.5px solid #000; text-align: left;
-  vertical-align: bottom; padding: 4px 10px; max-width: 9em; overflow-wrap: anywhere; }}
+th {{ position: sticky; top: 0; background: #fff; border-bottom: 1.5px solid #000; text-align: left;
+  vertical-align: bottom; padding: 4px 10px; max-width: 9em; }}
 td {{ padding: 2px 10px; border-bottom: 1px solid #e4e4e4; white-space: nowrap; }}
-td.number {{ text-align: right; font-variant-numeric: tabular-nums; }}
+th.number, td.number {{ text-align: right; font-variant-numeric: tabular-nums; }}
 tr:hover td {{ background: #f3f6fa; }}
 </style>
 </head>
