@@ -23,7 +23,7 @@ _SHRINK = 1.0 / 3.0
 _GROW = 6.0
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def _interpolate(theta, x, dense, sample):
     """The dense output at t + θ h."""
     rest = 1.0 - theta
@@ -34,18 +34,10 @@ def _interpolate(theta, x, dense, sample):
         sample[i] = x[i] + theta * value
 
 
-@njit(cache=True, error_model="numpy")
-def run_dop853(constant, kernel, t, x, rtol, atol, work):
-    """Fill x (m, d) from its first row at times t (m,), to relative and absolute tolerance a step.
-
-    Returns the rows filled, the time of the last accepted state, evaluations, accepted steps, a status.
-    """
+@njit(error_model="numpy", _nrt=False)
+def _integrate(constant, kernel, t, x, rtol, atol, work, k, dense, y, now, new):
+    """As `run_dop853`, with workspaces; apart from it because reference counts in the loop cost time."""
     d = states(constant, x[0])
-    k = np.empty((_ROWS, d))
-    dense = np.empty((7, d))
-    y = np.empty(d)
-    now = np.empty(d)
-    new = np.empty(d)
     for i in range(d):
         now[i] = x[0, i]
     time = t[0]
@@ -101,3 +93,18 @@ def run_dop853(constant, kernel, t, x, rtol, atol, work):
         h *= min(1.0 if rejected else _GROW, max(_SHRINK, factor))
         rejected = False
     return row, time, evaluations, steps, COMPLETED
+
+
+@njit(cache=True, error_model="numpy")
+def run_dop853(constant, kernel, t, x, rtol, atol, work):
+    """Fill x (m, d) from its first row at times t (m,), to relative and absolute tolerance a step.
+
+    Returns the rows filled, the time of the last accepted state, evaluations, accepted steps, a status.
+    """
+    d = states(constant, x[0])
+    k = np.empty((_ROWS, d))
+    dense = np.empty((7, d))
+    y = np.empty(d)
+    now = np.empty(d)
+    new = np.empty(d)
+    return _integrate(constant, kernel, t, x, rtol, atol, work, k, dense, y, now, new)

@@ -18,6 +18,8 @@ from flexsurr.simulation.rhs import Array
 # Sample times such as k·0.01 differ by an interval plus rounding; that must not cost a further step.
 _ROUNDING = 1e-9
 
+_OPTIONS = {"fastmath": ORDERED, "error_model": "numpy", "_nrt": False, "forceinline": True}
+
 
 def advance(
     method: NamedTuple, kernel: Any, t: float, h: float, x: Array, scratch: Array, work: Array
@@ -29,13 +31,14 @@ def advance(
     raise TypeError(f"no method is registered for {type(method).__name__}; call advance from compiled code")
 
 
-def implements_advance(
-    method_class: type, fastmath: bool | set[str] = ORDERED
-) -> Callable[[Callable[..., int]], Callable[..., int]]:
-    """Register the decorated function (method, kernel, t, h, x, scratch, work) -> int for `method_class`."""
+def implements_advance(method_class: type) -> Callable[[Callable[..., int]], Callable[..., int]]:
+    """Register the decorated function (method, kernel, t, h, x, scratch, work) -> int for `method_class`.
+
+    It must not allocate: like right-hand sides it is compiled without reference counts.
+    """
 
     def register(formula: Callable[..., int]) -> Callable[..., int]:
-        @overload(advance, inline="always")
+        @overload(advance, jit_options=_OPTIONS)
         def resolve(method, kernel, t, h, x, scratch, work):
             if isinstance(method, types.BaseNamedTuple) and method.instance_class is method_class:
                 return formula

@@ -104,7 +104,7 @@ def _advance_6(method, kernel, t, h, x, scratch, work):
     return -NOT_CONVERGED
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def _begin(kernel, t, x, k, work, stages):
     """On the first step, which finds NaN in its scratch, start every stage from f(t, x)."""
     rhs(kernel, t, x, k[0], work)
@@ -115,7 +115,7 @@ def _begin(kernel, t, x, k, work, stages):
     return 1
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def _judge(change, previous):
     """What two successive changes say of the iteration: converged to rounding, going on, or −status."""
     if change != change:

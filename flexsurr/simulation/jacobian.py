@@ -52,7 +52,7 @@ def _finite_differences(kernel, t, x, dx, jac, work):
     return d
 
 
-@overload(jacobian, jit_options={"fastmath": ORDERED, "error_model": "numpy"})
+@overload(jacobian, jit_options={"fastmath": ORDERED, "error_model": "numpy", "_nrt": False})
 def _resolve(kernel, t, x, dx, jac, work):
     if isinstance(kernel, types.BaseNamedTuple):
         return _analytic.get(kernel.instance_class, _finite_differences)

@@ -9,7 +9,7 @@ from numba import njit
 from flexsurr.simulation.rhs import FLOATING_POINT
 
 
-@njit(error_model="numpy", fastmath=FLOATING_POINT)
+@njit(error_model="numpy", fastmath=FLOATING_POINT, _nrt=False)
 def factorise(a, pivots):
     """Overwrite a (d, d) by its factors, the diagonal by its reciprocals; False if a is singular."""
     d = pivots.size
@@ -36,7 +36,7 @@ def factorise(a, pivots):
     return True
 
 
-@njit(error_model="numpy", fastmath=FLOATING_POINT)
+@njit(error_model="numpy", fastmath=FLOATING_POINT, _nrt=False)
 def solve(a, pivots, b):
     """Overwrite b (d,) by the solution of the system whose factors are `a` and `pivots`."""
     d = pivots.size

@@ -44,7 +44,7 @@ _SLOW = 1e-3  # a faster contraction keeps its Jacobian
 _EPSILON = float(np.finfo(np.float64).eps)
 
 
-@njit(error_model="numpy", fastmath=ORDERED)
+@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)
 def _weights(theta):
     """Values at θ of the polynomials that are 1 at one node, 0 at the others and at θ = 0."""
     u = theta - _C[0]
@@ -57,7 +57,7 @@ def _weights(theta):
     )
 
 
-@njit(error_model="numpy", fastmath=ORDERED)
+@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)
 def _extrapolate(z, ratio, guess):
     """Continue the last step's stages z (3, d) into a next one that is `ratio` times as long."""
     for s in range(_STAGES):
@@ -66,7 +66,7 @@ def _extrapolate(z, ratio, guess):
             guess[s, i] = first * z[0, i] + second * z[1, i] + (third - 1.0) * z[2, i]
 
 
-@njit(error_model="numpy", fastmath=ORDERED)
+@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)
 def _factorise(h, jac, real, real_pivots, complex_, complex_pivots):
     """Factorise μ/h I − J for both eigenvalues; False if one is singular."""
     d = jac.shape[0]
@@ -79,7 +79,7 @@ def _factorise(h, jac, real, real_pivots, complex_, complex_pivots):
     return factorise(real, real_pivots) and factorise(complex_, complex_pivots)
 
 
-@njit(error_model="numpy", fastmath=ORDERED)
+@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)
 def _newton(kernel, t, h, x, z, f, w, v, y, real, real_pivots, complex_, complex_pivots, rtol, atol, work):
     """Solve the stage equations for z (3, d) from the guess it holds.
 
@@ -123,7 +123,7 @@ def _newton(kernel, t, h, x, z, f, w, v, y, real, real_pivots, complex_, complex
     return False, _MOST_ITERATIONS, rate
 
 
-@njit(error_model="numpy", fastmath=ORDERED)
+@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)
 def _estimate(h, x, new, z, slope, error, real, real_pivots, rtol, atol):
     """Norm of the error estimate, left in `error`: (8.19) with f at the beginning as `slope`, or (8.20)."""
     for i in range(x.size):
@@ -139,7 +139,7 @@ def _estimate(h, x, new, z, slope, error, real, real_pivots, rtol, atol):
     return np.sqrt(square / x.size)
 
 
-@njit(error_model="numpy", fastmath=ORDERED)
+@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)
 def _growth(error, h, last_error, last_h):
     """Ratio of the next step to this one, before safety; predictive, (8.25)."""
     if error == 0.0:
@@ -150,27 +150,14 @@ def _growth(error, h, last_error, last_h):
     return classic * min(1.0, h / last_h * (last_error / error) ** 0.25)
 
 
-@njit(cache=True, error_model="numpy", fastmath=ORDERED)
-def run_radau(kernel, t, x, rtol, atol, work):
-    """Fill x (m, d) from its first row at times t (m,), to relative and absolute tolerance a step.
-
-    Returns the rows filled, the time of the last accepted state, evaluations, accepted steps, a status.
-    """
+@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)
+def _integrate(
+    kernel, t, x, rtol, atol, work,
+    jac, real, complex_, real_pivots, complex_pivots,
+    z, guess, f, v, w, y, now, new, slope,
+):  # fmt: skip
+    """As `run_radau`, with workspaces; apart from it because reference counts in the loop cost time."""
     d = x.shape[1]
-    jac = np.empty((d, d))
-    real = np.empty((d, d))
-    complex_ = np.empty((d, d), dtype=np.complex128)
-    real_pivots = np.empty(d, dtype=np.int64)
-    complex_pivots = np.empty(d, dtype=np.int64)
-    z = np.zeros((_STAGES, d))  # of the last accepted step
-    guess = np.zeros((_STAGES, d))  # of the step tried
-    f = np.empty((_STAGES, d))
-    v = np.empty(d, dtype=np.complex128)
-    w = np.empty(d)
-    y = np.empty(d)
-    now = np.empty(d)
-    new = np.empty(d)
-    slope = np.empty(d)
     for i in range(d):
         now[i] = x[0, i]
     time = t[0]
@@ -267,3 +254,31 @@ def run_radau(kernel, t, x, rtol, atol, work):
         elif factor < 1.0 or factor >= _KEEP_BELOW:
             h *= max(_SHRINK, factor)
     return row, time, evaluations, steps, COMPLETED
+
+
+@njit(cache=True, error_model="numpy", fastmath=ORDERED)
+def run_radau(kernel, t, x, rtol, atol, work):
+    """Fill x (m, d) from its first row at times t (m,), to relative and absolute tolerance a step.
+
+    Returns the rows filled, the time of the last accepted state, evaluations, accepted steps, a status.
+    """
+    d = x.shape[1]
+    jac = np.empty((d, d))
+    real = np.empty((d, d))
+    complex_ = np.empty((d, d), dtype=np.complex128)
+    real_pivots = np.empty(d, dtype=np.int64)
+    complex_pivots = np.empty(d, dtype=np.int64)
+    z = np.zeros((_STAGES, d))  # of the last accepted step
+    guess = np.zeros((_STAGES, d))  # of the step tried
+    f = np.empty((_STAGES, d))
+    v = np.empty(d, dtype=np.complex128)
+    w = np.empty(d)
+    y = np.empty(d)
+    now = np.empty(d)
+    new = np.empty(d)
+    slope = np.empty(d)
+    return _integrate(
+        kernel, t, x, rtol, atol, work,
+        jac, real, complex_, real_pivots, complex_pivots,
+        z, guess, f, v, w, y, now, new, slope,
+    )  # fmt: skip

@@ -9,7 +9,7 @@ from flexsurr.simulation.rhs import rhs
 _EPSILON = float(np.finfo(np.float64).eps)
 
 
-@njit(error_model="numpy", fastmath=ORDERED)
+@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)
 def scaled_norm(v, x, rtol, atol):
     """Root mean square of v_i / (atol + rtol |x_i|)."""
     total = 0.0
@@ -19,7 +19,7 @@ def scaled_norm(v, x, rtol, atol):
     return np.sqrt(total / v.size)
 
 
-@njit(error_model="numpy", fastmath=ORDERED)
+@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)
 def first_step(kernel, t, x, dx, span, order, rtol, atol, y, dy, work):
     """A first step [s] for an error estimate of the given order; takes one evaluation.
 
@@ -43,7 +43,7 @@ def first_step(kernel, t, x, dx, span, order, rtol, atol, y, dy, work):
     return min(100.0 * h, further, span)
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def smallest_step(t):
     """The step [s] below which t + h and its stages fall together."""
     return max(10.0 * _EPSILON * abs(t), 1e-300)
