@@ -3,9 +3,9 @@
 from typing import TYPE_CHECKING, Any
 
 from flexsurr.training.dataset import Dataset, load_dataset, split_dataset
-from flexsurr.training.fit import Fit, fit
+from flexsurr.training.fitting import Fit, fit
 from flexsurr.training.losses import nmse
-from flexsurr.training.select import select
+from flexsurr.training.selection import select
 from flexsurr.training.sweep import expand, run_id
 
 if TYPE_CHECKING:

@@ -13,20 +13,27 @@ from flexsurr.storage import replacing
 NAME = "checkpoint.npz"
 
 
-def write_checkpoint(folder: Path, belongs_to: dict[str, Any], state: dict[str, Array]) -> None:
-    """Write the arrays of `state` whole, with what they belong to (plain JSON values)."""
+def write_checkpoint(folder: Path, belongs_to: dict[str, Any], **states: dict[str, Array]) -> None:
+    """Write the arrays of the named `states` whole, with what they belong to (plain JSON values)."""
+    arrays = {f"{name}/{key}": array for name, state in states.items() for key, array in state.items()}
     with replacing(folder / NAME) as beside, beside.open("wb") as file:
-        np.savez(file, allow_pickle=False, belongs_to=np.array(_canonical(belongs_to)), **state)
+        np.savez(file, allow_pickle=False, belongs_to=np.array(_canonical(belongs_to)), **arrays)
 
 
-def read_checkpoint(folder: Path, belongs_to: dict[str, Any]) -> dict[str, Array] | None:
-    """The state in `folder`; None if there is none, or a damaged one, or one of another fit."""
+def read_checkpoint(folder: Path, belongs_to: dict[str, Any]) -> dict[str, dict[str, Array]] | None:
+    """The states in `folder` by name; None if there are none, or damaged ones, or those of another fit."""
     try:
         with (folder / NAME).open("rb") as content, np.load(content, allow_pickle=False) as file:
-            state = dict(file)
+            arrays = dict(file)
     except (OSError, EOFError, ValueError, zipfile.BadZipFile):
         return None
-    return state if str(state.pop("belongs_to", "")) == _canonical(belongs_to) else None
+    if str(arrays.pop("belongs_to", "")) != _canonical(belongs_to):
+        return None
+    states: dict[str, dict[str, Array]] = {}
+    for place, array in arrays.items():
+        name, key = place.split("/")
+        states.setdefault(name, {})[key] = array
+    return states
 
 
 def remove_checkpoint(folder: Path) -> None:

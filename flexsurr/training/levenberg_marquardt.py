@@ -51,10 +51,11 @@ class LevenbergMarquardt:
             step = _solve(gram, damping, gradient)
             if step is not None:
                 predicted = float(step @ (damping * step - gradient))
-                gain = (loss - self._objective.loss(self.parameters + step)) / predicted
-                if gain > 0.0:
+                gained = loss - self._objective.loss(self.parameters + step)
+                if gained > 0.0 and predicted > 0.0:
+                    gain = min(gained / predicted, 1.0)
                     self.parameters = self.parameters + step
-                    self._damping *= max(1.0 / 3.0, 1.0 - (2.0 * min(gain, 1.0) - 1.0) ** 3)
+                    self._damping *= max(1.0 / 3.0, 1.0 - (2.0 * gain - 1.0) ** 3)
                     self._damping = max(self._damping, SMALLEST_DAMPING)
                     self._growth = 2.0
                     self._equations = self._objective.normal_equations(self.parameters)

@@ -66,10 +66,10 @@ def fit(trial: Trial, dataset: Dataset, folder: str | Path, report: Report | Non
     optimiser = _optimiser(trial, training)
     belongs_to = {"trial": trial.model_dump(mode="json"), "dataset": dataset.sha256}
     progress = Progress(validation.loss(network.parameters), network.parameters)
-    state = read_checkpoint(folder, belongs_to)
-    if state is not None:
-        progress = Progress.restored(state)
-        optimiser.restore(state)
+    states = read_checkpoint(folder, belongs_to)
+    if states is not None:
+        progress = Progress.restored(states["progress"])
+        optimiser.restore(states["optimiser"])
     # the clock of this process, set forward by what an earlier one has spent
     start = time.perf_counter() - progress.wall_s
     saved = time.perf_counter()
@@ -84,7 +84,7 @@ def fit(trial: Trial, dataset: Dataset, folder: str | Path, report: Report | Non
         if report is not None:
             report(progress.epoch, train_loss, validation_loss, wall_s)
         if not reason and time.perf_counter() - saved > CHECKPOINT_EVERY_S:
-            write_checkpoint(folder, belongs_to, progress.state() | optimiser.state())
+            write_checkpoint(folder, belongs_to, progress=progress.state(), optimiser=optimiser.state())
             saved = time.perf_counter()
     if not reason and progress.best_epoch == 0:
         reason = f"none of {progress.epoch} epochs validated better than the weights it began with"

@@ -1,0 +1,85 @@
+"""Derivatives by the weights, closed-form, against torch's automatic ones."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import torch
+from oscillator import free_responses, network, three_pairs
+
+from flexsurr.training import nmse
+from flexsurr.training.networks import to_torch
+from flexsurr.training.objective import Objective
+
+SHAPES = [("hnn", (5,)), ("mlp", (5,)), ("hnn", (4, 3)), ("mlp", (4, 3, 2))]
+DATASETS = {"one pair": free_responses(4, 20), "three pairs": three_pairs()}
+
+
+def automatic_jacobian(surrogate, x):
+    """∂f/∂θ (m, 2r, n) of the scaled field in the layout of `Network.parameters`."""
+    module = to_torch(surrogate).train()
+    field = module(torch.from_numpy(x))
+    rows = [
+        torch.cat(
+            [
+                (block.T if block.ndim == 2 else block).reshape(-1)
+                for block in torch.autograd.grad(f, module.parameters(), retain_graph=True)
+            ]
+        )
+        for f in field.reshape(-1)
+    ]
+    return torch.stack(rows).reshape(*x.shape, -1).numpy()
+
+
+@pytest.mark.parametrize("data", DATASETS)
+@pytest.mark.parametrize(("architecture", "hidden"), SHAPES)
+def test_gradient_and_normal_equations(architecture, hidden, data, monkeypatch):
+    dataset = DATASETS[data]
+    surrogate = network(dataset, architecture, hidden)
+    objective = Objective.of(surrogate, dataset.x_train, dataset.dx_train)
+    # pieces smaller than the samples, and the last one smaller than the others
+    monkeypatch.setattr(
+        "flexsurr.training.objective.CHUNK", 7 * surrogate.parameter_count * dataset.x_train.shape[1]
+    )
+
+    jacobian = automatic_jacobian(surrogate, objective.x)
+    residuals = surrogate.scaled_field(objective.x) - objective.y
+    weighted = jacobian * (objective.output_weights / len(objective.x))[:, None]
+    gradient = np.einsum("sin,si->n", weighted, residuals)
+    gram = np.einsum("sin,sim->nm", weighted, jacobian)
+
+    equations = objective.normal_equations(surrogate.parameters)
+    np.testing.assert_allclose(equations.gram, gram, rtol=1e-10, atol=1e-12 * np.max(np.abs(gram)))
+    np.testing.assert_allclose(
+        equations.gradient, gradient, rtol=1e-10, atol=1e-12 * np.max(np.abs(gradient))
+    )
+    found = np.empty_like(gradient)
+    losses = objective.gradient(surrogate.parameters, found), objective.loss(surrogate.parameters)
+    np.testing.assert_allclose(found, 2 * gradient, rtol=1e-10, atol=1e-12 * np.max(np.abs(gradient)))
+    expected = nmse(surrogate.derivative(0.0, dataset.x_train), dataset.dx_train)
+    np.testing.assert_allclose([*losses, equations.loss], expected, rtol=1e-12)
+
+
+def test_gradient_over_chosen_samples():
+    dataset = DATASETS["one pair"]
+    surrogate = network(dataset, "hnn", (5,))
+    whole = Objective.of(surrogate, dataset.x_train, dataset.dx_train)
+    chosen = np.array([3, 11, 4])
+    part = replace(whole, x=whole.x[chosen], y=whole.y[chosen])
+    part.__dict__["output_weights"] = whole.output_weights
+    found, expected = np.empty((2, surrogate.parameter_count))
+    assert whole.gradient(surrogate.parameters, found, chosen) == pytest.approx(
+        part.gradient(surrogate.parameters, expected), rel=1e-13
+    )
+    np.testing.assert_allclose(found, expected, rtol=1e-12)
+
+
+def test_nmse_by_hand():
+    """Errors (1, 1) on a target of variance 4, and (3, −3) on one of variance 9: (1/4 + 9/9) / 2."""
+    target = np.array([[0.0, 1.0], [4.0, 7.0]])
+    assert nmse(target + np.array([[1.0, 3.0], [1.0, -3.0]]), target) == pytest.approx(0.625)
+
+
+def test_an_output_without_variance_has_no_nmse():
+    with pytest.raises(ValueError, match="output 1 does not vary"):
+        nmse(np.zeros((3, 2)), np.array([[0.0, 5.0], [1.0, 5.0], [2.0, 5.0]]))

@@ -1,0 +1,60 @@
+"""What is chosen among runs."""
+
+import itertools
+
+from flexsurr.training import select
+
+
+def record(run, architecture="hnn", error=1.0, parameters=64, variant="hamiltonian", **more):
+    return {
+        "run_id": run,
+        "variant": variant,
+        "status": "finished",
+        "architecture": architecture,
+        "parameters": parameters,
+        "long_response_error_percent_worst": error,
+        "validation_nmse": 1.0,
+        "diverged": 0,
+    } | more
+
+
+RECORDS = [
+    record("small", error=3.0, parameters=16),
+    record("best", error=0.1, parameters=64, validation_nmse=1e-6),
+    record("lowest loss", error=0.5, parameters=64, validation_nmse=1e-12),
+    record("large", error=0.2, parameters=512),
+    record("plain", "mlp", error=7.0, parameters=66),
+    record("other", error=9.0, variant="as_printed"),
+    record("failed", status="failed", long_response_error_percent_worst=None),
+    record("runs away", error=None, diverged=3),
+    record("runs away later", error=0.01, diverged=1),
+]
+
+
+def test_the_best_of_each_architecture_by_the_long_response():
+    selection = select(RECORDS)
+    assert set(selection) == {"hamiltonian", "as_printed"}
+    assert selection["hamiltonian"]["hnn"] == RECORDS[1]
+    assert selection["hamiltonian"]["mlp"]["run_id"] == "plain"
+    assert selection["as_printed"]["hnn"]["run_id"] == "other"
+
+
+def test_the_pareto_set_is_what_none_beats():
+    found = [r["run_id"] for r in select(RECORDS)["hamiltonian"]["pareto"]]
+    assert found == ["small", "best"]
+
+
+def test_order_does_not_matter():
+    ties = [
+        *RECORDS[:3],
+        record("a tie", error=0.1, parameters=64),
+        record("cheaper tie", error=0.1, parameters=60),
+    ]
+    results = [select(order) for order in itertools.permutations(ties)]
+    assert all(result == results[0] for result in results)
+    assert results[0]["hamiltonian"]["hnn"]["run_id"] == "cheaper tie"
+
+
+def test_nothing_to_choose_from():
+    assert select([]) == {}
+    assert select([RECORDS[6]]) == {}
