@@ -10,6 +10,7 @@ from flexsurr.report.integrators import integrator_method
 from flexsurr.report.labels import freeze_layout, place_labels
 from flexsurr.report.style import (
     GREY,
+    NAMES,
     PAGE_IN,
     VARIANTS,
     colour,
@@ -34,13 +35,16 @@ SHORT: dict[str, str] = {
 
 RESPONSES = ("free", "forced")
 
+WORTH_NAMING_PERCENT = 5.0
+"""Errors up to which a point of the Pareto front gets a label: cheap and wrong is no bargain."""
+
 
 @styled
 def cost_accuracy(cost: pd.DataFrame) -> Figure:
     """Wall time of one response against its tip error: every model × implementation × integrator.
 
     `cost`: the columns of cost.csv. One row of panels for each response, one column for each
-    variant. Labelled: the Pareto front, and the baselines and torch with SciPy's Radau. A setup of which
+    variant. Labelled: the useful part of the Pareto front, the baselines and torch. A setup of which
     a simulation diverged is hollow; one of which all did has no place.
     """
     responses = [response for response in RESPONSES if response in set(cost["response"])]
@@ -107,8 +111,9 @@ def _panel(ax: Axes, cost: pd.DataFrame) -> None:
             clip_on=False,
         )
         way = implementation if method == "scipy_radau" else SHORT.get(method, method)
-        if of_front or _is_landmark(model, implementation, method):
-            labels.append((point, f"{label(model)}, {way}", colour(model)))
+        name = label(model).replace(NAMES["rom"], "ROM")
+        if (of_front and error <= WORTH_NAMING_PERCENT) or _is_landmark(model, implementation, method):
+            labels.append((point, f"{name}, {way}", colour(model)))
         elif model == "rom":
             # surrogates stand at the same heights or to their left: one model names the integrators
             labels.append((point, way, colour(model)))
@@ -156,9 +161,13 @@ def _limits(ax: Axes, cost: pd.DataFrame) -> None:
     ax.set_ylim(max(error[error > 0.0].min(), 1e-12) / 4.0, error.max() * 4.0)
 
 
+def _in_legend(model: str) -> str:
+    return f"{label(model)} (ROM)" if model == "rom" else label(model)
+
+
 def _legend(figure: Figure, cost: pd.DataFrame) -> None:
     handles = [
-        Line2D([], [], color=colour(model), marker="o", linestyle="", label=label(model))
+        Line2D([], [], color=colour(model), marker="o", linestyle="", label=_in_legend(model))
         for model in dict.fromkeys(cost["model"])
     ]
     handles += [

@@ -36,7 +36,7 @@ def place_labels(
     obstacles: Sequence[Point],
     size: float = 6,
 ) -> None:
-    """Write texts[i] near points[i] (data coordinates), off all `obstacles` and earlier labels.
+    """Write texts[i] near points[i] (data coordinates), off all `obstacles` and whatever is written already.
 
     Greedy and deterministic: each label takes the nearest free place inside the axes, else the one
     with the least overlap. The layout must be frozen and the limits of the axes final.
@@ -48,6 +48,7 @@ def place_labels(
     centres = ax.transData.transform(np.asarray(obstacles, dtype=float).reshape(-1, 2))
     half = _MARKER_HALF * pixels
     taken = [np.concatenate([centres - half, centres + half], axis=1)]
+    taken += [np.array([text.get_window_extent().extents]) for text in ax.texts]
     places = [(distance, dx, dy) for distance in _DISTANCES for dx, dy in _DIRECTIONS]
     for point, text, colour in zip(points, texts, colours, strict=True):
         extent = _extent(ax, text, size) + 2.0 * _PADDING * pixels
@@ -59,6 +60,9 @@ def place_labels(
         best = int(np.argmin(np.round(_overlaps(boxes, others).sum(axis=1) + 3.0 * outside, 6)))
         taken.append(boxes[best : best + 1])
         distance, dx, dy = places[best]
+        if distance >= _TIED_FROM:
+            along = np.linspace(0.2, 0.9, 6)[:, None] * pixels * distance * np.array([dx, dy])
+            taken.append(np.concatenate([at + along - pixels, at + along + pixels], axis=1))
         line = {"arrowstyle": "-", "lw": 0.4, "color": colour, "shrinkA": 0, "shrinkB": 2}
         ax.annotate(
             text,
