@@ -14,7 +14,7 @@ from flexsurr.evaluation import long_response_errors
 from flexsurr.storage import write_json
 from flexsurr.surrogates import load
 from flexsurr.training import select
-from flexsurr.training.tracking import Store, end_sweep
+from flexsurr.training.tracking import end_sweep, read_store
 
 log = logging.getLogger(__name__)
 
@@ -40,7 +40,7 @@ def main(job: Job, runs: Path, store: Path, output: Path) -> None:
                 known_as = name if sweep == DEFAULT_SWEEP else f"{name}_{sweep}"
                 selection.setdefault(variant, {})[known_as] = entry
     write_json(output, selection)
-    end_sweep(Store(**json.loads(store.read_text(encoding="utf-8"))), job["study"], metrics)
+    end_sweep(read_store(store), job["study"], metrics)
 
 
 def _judge(study: Study, basis: ModalBasis, folder: Path) -> dict[str, Any]:

@@ -1,7 +1,6 @@
 """Train one surrogate: a trial of a sweep on the data of one variant."""
 
 import fcntl
-import json
 import logging
 import math
 import os
@@ -16,7 +15,7 @@ from flexsurr.config.sweep import Trial
 from flexsurr.storage import replacing, write_json
 from flexsurr.surrogates import save
 from flexsurr.training import Fit, fit, load_dataset
-from flexsurr.training.tracking import Store, tracked
+from flexsurr.training.tracking import read_store, tracked
 
 log = logging.getLogger(__name__)
 
@@ -53,7 +52,7 @@ def _train(job: Job, manifest: Path, store: Path, folder: Path) -> None:
     dataset = load_dataset(manifest)
     described = {**job, "dataset_sha256": dataset.sha256}
     write_json(folder / "parameters.json", described)
-    page_store = Store(**json.loads(store.read_text(encoding="utf-8")))
+    page_store = read_store(store)
     shown = {"variant": job["variant"], **job["trial"], "dataset_sha256": dataset.sha256}
     with tracked(page_store, job["study"], job["run_id"], shown) as page:
         next_s = time.monotonic()

@@ -5,13 +5,14 @@ the results are made all the same. One experiment a study; in it one parent run 
 study, of which each trial is a child.
 """
 
+import json
 import logging
 import math
 import os
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,8 @@ os.environ.setdefault("MLFLOW_HTTP_REQUEST_TIMEOUT", "20")
 from mlflow import MlflowClient
 from mlflow.entities import Metric, Param, Run, RunTag
 from mlflow.utils.mlflow_tags import MLFLOW_PARENT_RUN_ID, MLFLOW_RUN_NAME
+
+from flexsurr.storage import write_json
 
 log = logging.getLogger(__name__)
 
@@ -83,6 +86,18 @@ def store_uri(uri: str | None, folder: Path) -> str:
 def database(folder: Path) -> Path:
     """The SQLite database of a store that lives in `folder`."""
     return folder.absolute() / "mlflow.db"
+
+
+def write_store(path: Path, store: Store) -> None:
+    """Write how to reach `store`; a database in the folder of `path` without its place, which may move."""
+    is_beside = store.uri == store_uri(None, path.parent)
+    write_json(path, {**asdict(store), "uri": None if is_beside else store.uri})
+
+
+def read_store(path: Path) -> Store:
+    """The store that `write_store` wrote to `path`."""
+    values = json.loads(path.read_text(encoding="utf-8"))
+    return Store(**{**values, "uri": store_uri(values["uri"], path.parent)})
 
 
 def create_store(uri: str, folder: Path, studies: Sequence[str]) -> Store:

@@ -12,8 +12,10 @@ from flexsurr.training.tracking import (
     create_store,
     database,
     end_sweep,
+    read_store,
     store_uri,
     tracked,
+    write_store,
 )
 
 PARENT = "mlflow.parentRunId"
@@ -105,6 +107,17 @@ def test_the_end_of_the_sweep_leaves_nothing_running(made):
     assert run_of(made, "hnn-7").data.metrics["long_response_error_percent_worst"] == 0.5
     assert client.get_run(made.parents["cantilever"]).info.status == "FINISHED"
     assert client.search_runs([made.experiments["cantilever"]], "attributes.status = 'RUNNING'") == []
+
+
+def test_a_store_is_found_again_where_its_folder_has_moved_to(tmp_path):
+    old, new = tmp_path / "old", tmp_path / "new"
+    old.mkdir()
+    write_store(old / "store.json", Store(store_uri(None, old), {"cantilever": "1"}, {"cantilever": "x"}))
+    old.rename(new)
+    assert read_store(new / "store.json").uri == store_uri(None, new)
+    server = Store("http://127.0.0.1:5000", {}, {})
+    write_store(new / "store.json", server)
+    assert read_store(new / "store.json") == server
 
 
 def test_creating_the_store_again_changes_nothing(made):

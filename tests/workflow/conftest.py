@@ -7,25 +7,26 @@ import pytest
 from project import Project
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-PARTS = ("Snakefile", "workflow", "profiles", "config", "flexsurr", "pyproject.toml")
-STRAY = shutil.ignore_patterns("__pycache__", ".ruff_cache")
+PARTS = ("Snakefile", "workflow", "profiles", "config")
+STATE = ("results", ".snakemake")
 
 
 @pytest.fixture(scope="session")
 def make_project(tmp_path_factory):
-    """Copies of the project; what still runs in them at the end is ended."""
+    """Copies of the project; what still runs in them at the end is ended.
+
+    They run the code of the repository itself, whose kernels need not be compiled again.
+    """
     made: list[Project] = []
 
-    def make(start_from: Path | None = None) -> Project:
+    def make(start_from: Project | None = None) -> Project:
+        """A new project, or one that is where `start_from` has come to."""
         root = tmp_path_factory.mktemp("project")
-        if start_from is not None:
-            shutil.copytree(start_from, root, dirs_exist_ok=True, symlinks=True)
-        else:
-            for part in PARTS:
-                source = REPOSITORY / part
-                copy = shutil.copytree if source.is_dir() else shutil.copy2
-                copy(source, root / part, **({"ignore": STRAY} if source.is_dir() else {}))
-        made.append(Project(root))
+        for part in (*PARTS, *STATE) if start_from else PARTS:
+            source = (start_from.root if start_from else REPOSITORY) / part
+            copy = shutil.copytree if source.is_dir() else shutil.copy2
+            copy(source, root / part)
+        made.append(Project(root, REPOSITORY))
         return made[-1]
 
     yield make
@@ -45,4 +46,4 @@ def quick(make_project) -> Project:
 @pytest.fixture
 def copy_of_quick(quick, make_project) -> Project:
     """The finished quick preset, free to be changed."""
-    return make_project(start_from=quick.root)
+    return make_project(quick)

@@ -23,6 +23,7 @@ class Project:
     """A copy of the project in which a test may do as it likes."""
 
     root: Path
+    code: Path  # the folder whose flexsurr it runs
     started: list[subprocess.Popen] = field(default_factory=list)
 
     @property
@@ -43,7 +44,7 @@ class Project:
             process = subprocess.Popen(
                 [*self.command, *options],
                 cwd=self.root,
-                env=os.environ | {"PYTHONPATH": str(self.root)},
+                env=os.environ | {"PYTHONPATH": str(self.code)},
                 stdout=output,
                 stderr=subprocess.STDOUT,
                 start_new_session=True,
@@ -54,7 +55,7 @@ class Project:
 
     def run(self, *options: str) -> tuple[int, str]:
         """Run Snakemake to its end: exit code and everything it printed."""
-        code = self.start(*options).wait(timeout=600)
+        code = self.start(*options).wait(timeout=1800)
         return code, (self.root / "snakemake.out").read_text()
 
     def run_well(self, *options: str) -> str:
@@ -103,7 +104,7 @@ def counted(output: str) -> dict[str, int]:
     return jobs
 
 
-def eventually(happens: Callable[[], bool], within_s: float = 120.0) -> None:
+def eventually(happens: Callable[[], bool], within_s: float = 600.0) -> None:
     """Wait until something is so."""
     end = time.monotonic() + within_s
     while not happens():

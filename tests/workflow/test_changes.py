@@ -1,5 +1,7 @@
 """After a change, exactly what depends on it is made again."""
 
+import shutil
+
 import pytest
 
 BEAM = "cantilever"
@@ -76,6 +78,9 @@ def test_changing_a_value(copy_of_quick, file, keys, value, jobs):
     ],
 )
 def test_editing_code(copy_of_quick, file, made_again, left_alone):
+    stray = shutil.ignore_patterns("__pycache__")
+    shutil.copytree(copy_of_quick.code / "flexsurr", copy_of_quick.root / "flexsurr", ignore=stray)
+    copy_of_quick.code = copy_of_quick.root
     with (copy_of_quick.root / file).open("a") as source:
         source.write("# another thought\n")
     scheduled = copy_of_quick.scheduled()

@@ -31,21 +31,21 @@ spaces:
 @pytest.fixture(scope="module")
 def prepared(quick, make_project):
     """The quick preset with one long training instead of its sweep, not yet run."""
-    project = make_project(start_from=quick.root)
+    project = make_project(quick)
     (project.root / "config/sweeps/quick.yaml").write_text(LONG_SWEEP)
     return project
 
 
 @pytest.fixture(scope="module")
 def undisturbed(prepared, make_project):
-    project = make_project(start_from=prepared.root)
+    project = make_project(prepared)
     project.run_well(*TARGETS)
     return project
 
 
 @pytest.fixture
 def disturbed(prepared, make_project):
-    return make_project(start_from=prepared.root)
+    return make_project(prepared)
 
 
 def training_processes(project) -> list[int]:
