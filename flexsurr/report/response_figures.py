@@ -25,7 +25,7 @@ WINDOW_S = 0.6
 """Length of a window in which single oscillations can be seen."""
 
 MARKED_EVERY_S = 0.045
-_MARKERS = ("", "s", "o", "^")
+_MARKERS = ("s", "o", "^", "D", "v", "P")
 
 LOADED = "#F6E7C8"
 
@@ -75,9 +75,7 @@ def _histories(response: pd.DataFrame, forced: bool) -> Figure:
         ax.set_ylabel("tip height z [m]")
     grid[2, 0].set_ylabel("tip error [% of the peak]")
     handles = [
-        Line2D(
-            [], [], color=colour(model), marker=_MARKERS[k % 4], markerfacecolor="white", label=label(model)
-        )
+        Line2D([], [], color=colour(model), marker=_marker(k), markerfacecolor="white", label=label(model))
         for k, model in enumerate(_models(response))
     ]
     shade = [Patch(color=LOADED, label="force acts")] if forced else []
@@ -104,7 +102,7 @@ def _window(ax: Axes, shown: pd.DataFrame, start_s: float, end_s: float) -> None
             ax.plot(
                 t[at],
                 z[at],
-                _MARKERS[k % 4],
+                _marker(k),
                 color=colour(model),
                 markerfacecolor="white",
                 markersize=3.6,
@@ -126,7 +124,7 @@ def _errors(ax: Axes, shown: pd.DataFrame, end_s: float) -> None:
         ax.plot(
             t,
             worst,
-            marker=_MARKERS[k % 4],
+            marker=_marker(k),
             color=colour(model),
             markerfacecolor="white",
             markersize=3.6,
@@ -141,3 +139,8 @@ def _errors(ax: Axes, shown: pd.DataFrame, end_s: float) -> None:
 def _models(shown: pd.DataFrame) -> Sequence[str]:
     """The models in order of appearance, the reference first."""
     return ["reference", *(model for model in shown["model"].unique() if model != "reference")]
+
+
+def _marker(k: int) -> str:
+    """The marker of the k-th model; none for the reference, which is the first."""
+    return _MARKERS[(k - 1) % len(_MARKERS)] if k else ""

@@ -8,6 +8,7 @@ from typing import Any, ParamSpec
 import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
@@ -56,8 +57,11 @@ VARIANTS: dict[str, str] = {
 
 
 def colour(model: str) -> str:
-    """The colour of a model; of its family where the name carries more, as in "hnn_paper"."""
-    return COLOURS[_family(model)]
+    """The colour of a model; a pale one of its family where the name carries more, as in "hnn_paper"."""
+    family = _family(model)
+    red, green, blue = to_rgb(COLOURS[family])
+    share = 1.0 if model == family else 0.5
+    return to_hex((1 - share + share * red, 1 - share + share * green, 1 - share + share * blue))
 
 
 def label(model: str) -> str:
