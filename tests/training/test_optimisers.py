@@ -66,6 +66,29 @@ def test_levenberg_marquardt_repeats_steps_from_the_same_jacobian():
         assert problem.linearisations == 1 + accepted
 
 
+def test_levenberg_marquardt_does_not_depend_on_units():
+    """A parameter in other units: the same path, in those units."""
+    units = np.array([1.0, 1024.0])
+    problem = rosenbrock()
+    scaled = Residuals(lambda x: problem.residuals(x / units), lambda x: problem.jacobian(x / units) / units)
+    one = LevenbergMarquardt(problem, np.array([-1.2, 1.0]))
+    other = LevenbergMarquardt(scaled, np.array([-1.2, 1.0]) * units)
+    for _ in range(10):
+        assert other.epoch() == pytest.approx(one.epoch(), rel=1e-6)
+        np.testing.assert_allclose(other.parameters, one.parameters * units, rtol=1e-6)
+
+
+def test_levenberg_marquardt_damps_by_the_largest_diagonal_met():
+    problem = rosenbrock()
+    optimiser = LevenbergMarquardt(problem, np.array([-1.2, 1.0]))
+    largest = problem.normal_equations(optimiser.parameters).gram.diagonal()
+    for _ in range(10):
+        optimiser.epoch()
+        largest = np.maximum(largest, problem.normal_equations(optimiser.parameters).gram.diagonal())
+    np.testing.assert_array_equal(optimiser.state()["largest"], largest)
+    assert np.any(largest > problem.normal_equations(optimiser.parameters).gram.diagonal())
+
+
 def test_levenberg_marquardt_notices_its_end():
     """Powell's singular function has a singular JᵀJ at its minimum."""
     root5, root10 = np.sqrt(5.0), np.sqrt(10.0)
