@@ -103,11 +103,24 @@ class TipForce(Record):
     longest_s: Positive = 5.0
 
 
+class DescribedSimulations(Record):
+    """How many simulations the described reduced model is timed on: it takes half a minute for each."""
+
+    as_printed: Count = 3
+    hamiltonian: Count = 1
+
+    def of(self, variant: Variant) -> int:
+        """The number for one variant."""
+        number: int = getattr(self, variant)
+        return number
+
+
 class EvaluationSettings(Record):
     """Responses by which models are timed and judged."""
 
     simulations: Count = 10
-    described_simulations: Count = 3
+    described_simulations: DescribedSimulations = DescribedSimulations()
+    scipy_simulations: Count = 3
     duration_s: Positive = 30.0
     output_step_s: Positive = 0.01
     repeats: Count = 5

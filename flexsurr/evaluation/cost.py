@@ -34,10 +34,13 @@ class Setup:
     contender: Contender
     integrator: Integrator
 
-    def simulations(self, settings: EvaluationSettings) -> int:
+    def simulations(self, settings: EvaluationSettings, variant: Variant) -> int:
         """How many of the study's simulations this row runs."""
-        few = min(settings.described_simulations, settings.simulations)
-        return few if self._steps_in_python else settings.simulations
+        if self.contender.implementation == "described":
+            return min(settings.described_simulations.of(variant), settings.simulations)
+        if self._steps_in_python:
+            return min(settings.scipy_simulations, settings.simulations)
+        return settings.simulations
 
     def repeats(self, settings: EvaluationSettings) -> int:
         """How often each simulation is timed."""
@@ -101,7 +104,7 @@ def measurements(
         for setup in setups(models, settings.integrators):
             timed = [
                 _measure(setup, basis, variant, reference, setup.repeats(settings))
-                for reference in references[: setup.simulations(settings)]
+                for reference in references[: setup.simulations(settings, variant)]
             ]
             rows += timed
             log.info(

@@ -52,7 +52,12 @@ RESPONSES = (
     "evaluation.force",
     "evaluation.integrators",
 )
-COST = (*RESPONSES, "evaluation.described_simulations", "evaluation.repeats")
+COST = (
+    *RESPONSES,
+    "evaluation.described_simulations",
+    "evaluation.scipy_simulations",
+    "evaluation.repeats",
+)
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,15 @@ import pytest
 
 from flexsurr.beam import draw_initial_conditions, reduce, reduced_order
 from flexsurr.config.structure import Structure
-from flexsurr.config.study import EvaluationSettings, Integrator, Reduction, Statics, Study, TipForce
+from flexsurr.config.study import (
+    DescribedSimulations,
+    EvaluationSettings,
+    Integrator,
+    Reduction,
+    Statics,
+    Study,
+    TipForce,
+)
 from flexsurr.simulation import simulate
 from flexsurr.surrogates import PolynomialHamiltonian, canonical_scaling
 
@@ -30,7 +38,8 @@ def study():
         reduction=Reduction(modes=1),
         evaluation=EvaluationSettings(
             simulations=3,
-            described_simulations=2,
+            described_simulations=DescribedSimulations(hamiltonian=1),
+            scipy_simulations=2,
             duration_s=0.3,
             output_step_s=0.01,
             repeats=2,

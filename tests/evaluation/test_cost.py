@@ -31,9 +31,11 @@ def test_every_model_implementation_and_integrator_has_its_row(table):
 
 
 def test_where_python_steps_the_first_few_simulations_have_to_do(table, study):
-    slow = table["integrator"] == "scipy_radau"
-    assert (table[slow]["simulations"] == study.evaluation.described_simulations).all()
-    assert (table[~slow]["simulations"] == study.evaluation.simulations).all()
+    by_python = table["integrator"] == "scipy_radau"
+    described = table["implementation"] == "described"
+    assert (table[described]["simulations"] == study.evaluation.described_simulations.hamiltonian).all()
+    assert (table[by_python & ~described]["simulations"] == study.evaluation.scipy_simulations).all()
+    assert (table[~by_python]["simulations"] == study.evaluation.simulations).all()
     assert (table["diverged"] == 0).all()
 
 

@@ -66,7 +66,7 @@ CHANGES = [
     (STUDY, "evaluation.force.amplitude_N", 5.0, {"validation", "respond", "cost"}),
     (QUICK, f"{OVER}.dataset.trajectories", 9, {"manifest", "simulate"}),
     (QUICK, f"{OVER}.evaluation.repeats", 2, {"cost"}),
-    (QUICK, f"{OVER}.evaluation.described_simulations", 2, {"cost"}),
+    (QUICK, f"{OVER}.evaluation.described_simulations.as_printed", 2, {"cost"}),
     (QUICK, f"{OVER}.evaluation.simulations", 3, {"respond", "cost"}),
     (QUICK, f"{OVER}.evaluation.long_responses", 3, {"select"}),
     (QUICK, f"{OVER}.evaluation.duration_s", 0.3, JUDGED),
