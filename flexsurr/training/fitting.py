@@ -12,10 +12,12 @@ import pandas as pd
 
 from flexsurr.config.sweep import Trial
 from flexsurr.surrogates import HNN, MLP, Network, Surrogate, canonical_scaling
+from flexsurr.training.adam import Adam
 from flexsurr.training.checkpoint import read_checkpoint, remove_checkpoint, write_checkpoint
 from flexsurr.training.dataset import Dataset
 from flexsurr.training.initialisation import initial_parameters
 from flexsurr.training.least_squares import fit_polynomial
+from flexsurr.training.levenberg_marquardt import LevenbergMarquardt
 from flexsurr.training.losses import nmse
 from flexsurr.training.objective import Objective
 from flexsurr.training.optimiser import Optimiser
@@ -127,15 +129,11 @@ def _untrained(trial: Trial, dataset: Dataset) -> Network:
 def _optimiser(trial: Trial, objective: Objective) -> Optimiser:
     parameters = objective.network.parameters
     if trial.optimiser == "levenberg_marquardt":
-        from flexsurr.training.levenberg_marquardt import LevenbergMarquardt
-
         return LevenbergMarquardt(objective, parameters)
     if trial.optimiser == "lbfgs":
         from flexsurr.training.lbfgs import LBFGS  # here, for it imports torch
 
         return LBFGS(objective, parameters)
-    from flexsurr.training.adam import Adam
-
     assert trial.learning_rate is not None  # a Trial with Adam has both
     assert trial.batch_size is not None
     return Adam(

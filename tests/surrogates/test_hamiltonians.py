@@ -1,5 +1,7 @@
 """What every surrogate with an energy obeys, whatever its weights."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -10,6 +12,11 @@ from flexsurr.surrogates import HNN
 
 EACH = pytest.mark.parametrize("surrogate", HAMILTONIANS.values(), ids=HAMILTONIANS.keys())
 SEEDS = st.integers(0, 2**32 - 1)
+
+
+def with_random_weights(surrogate, seed):
+    weights = np.random.default_rng(seed).normal(size=surrogate.parameter_count)
+    return replace(surrogate, parameters=weights)
 
 
 def random_states(surrogate, seed, number=3):
@@ -36,6 +43,7 @@ def jacobian(surrogate, x):
 @given(seed=SEEDS)
 def test_energy_is_constant_along_the_field(surrogate, seed):
     """DH/dt = ∇H · ẋ = 0, the gradient by differences of H."""
+    surrogate = with_random_weights(surrogate, seed)
     x = random_states(surrogate, seed)
     scales = surrogate.scaling.states(x.shape[-1])
     h = 1e-4
@@ -50,6 +58,7 @@ def test_energy_is_constant_along_the_field(surrogate, seed):
 @EACH
 @given(seed=SEEDS)
 def test_field_is_free_of_divergence(surrogate, seed):
+    surrogate = with_random_weights(surrogate, seed)
     (x,) = random_states(surrogate, seed, 1)
     matrix = jacobian(surrogate, x)
     assert abs(np.trace(matrix)) <= 1e-8 * np.max(np.abs(matrix))
@@ -59,6 +68,7 @@ def test_field_is_free_of_divergence(surrogate, seed):
 @given(seed=SEEDS)
 def test_hessian_is_symmetric(surrogate, seed):
     """Hamilton's equations turned back: −Ω ∂ẋ/∂x is the second derivative of H."""
+    surrogate = with_random_weights(surrogate, seed)
     (x,) = random_states(surrogate, seed, 1)
     matrix = jacobian(surrogate, x)
     r = len(x) // 2

@@ -1,5 +1,8 @@
 """The torch modules are the same networks."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 import torch
@@ -42,3 +45,9 @@ def test_single_precision():
     found = torch_model(surrogate, torch.float32).derivative(0.0, DATASET.x_train)
     expected = surrogate.derivative(0.0, DATASET.x_train)
     assert 0.0 < np.max(np.abs(found - expected)) < 1e-5 * np.max(np.abs(expected))
+
+
+def test_torch_is_imported_only_when_it_is_used():
+    """Least squares and the expansion of a sweep should not wait for it."""
+    script = "import sys, flexsurr.training; sys.exit('torch' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", script], check=False).returncode == 0
