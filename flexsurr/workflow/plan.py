@@ -32,7 +32,7 @@ DATASET = (
     "dataset.initial_conditions",
     "dataset.integrator",
 )
-SELECTION = (
+JUDGEMENT = (
     "seed",
     "reduction",
     "dataset.initial_conditions",
@@ -138,14 +138,17 @@ class Plan:
         trial = run.trial.model_dump(mode="json")
         return {"run_id": key, "study": run.study, "variant": run.variant, "trial": trial}
 
+    def judge(self, study: str) -> Job:
+        """Long responses of all runs of a study."""
+        return {**self._part(study, JUDGEMENT), "runs": self.runs_of(study)}
+
     def select(self, study: str) -> Job:
-        """The judgement of all runs of a study; `sweeps` maps sweep and variant to run_ids."""
-        variants = self.variants(study)
+        """The choice among the runs of each sweep of a study."""
         sweeps = {
-            sweep: {variant: [run_id(trial, study, variant) for trial in trials] for variant in variants}
+            sweep: [run_id(trial, study, variant) for variant in self.variants(study) for trial in trials]
             for sweep, trials in self._trials[study].items()
         }
-        return {**self._part(study, SELECTION), "study": study, "sweeps": sweeps}
+        return {"study": study, "sweeps": sweeps}
 
     def statics(self, study: str) -> Job:
         """Static deflection and natural frequencies."""

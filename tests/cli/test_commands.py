@@ -20,8 +20,8 @@ import time
 from flexsurr.cli.command import command
 
 def main(job):
-    print("at work", flush=True)
     try:
+        print("at work", flush=True)
         time.sleep(60)
     finally:
         print("closed", flush=True)

@@ -84,7 +84,8 @@ def test_a_missing_module_is_named(root):
         ("simulate", "flexsurr.beam.compiled", "flexsurr.training"),
         ("manifest", "flexsurr.storage.manifest", "flexsurr.beam"),
         ("train", "flexsurr.training.tracking", "flexsurr.evaluation"),
-        ("select", "flexsurr.evaluation.selection", "flexsurr.report"),
+        ("judge", "flexsurr.evaluation.selection", "flexsurr.report"),
+        ("select", "flexsurr.training.selection", "flexsurr.evaluation"),
         ("figures", "flexsurr.report.style", "flexsurr.training"),
     ],
 )

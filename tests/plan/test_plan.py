@@ -30,7 +30,7 @@ def plan(root: Path) -> Plan:
 def jobs(root: Path) -> dict[str, str]:
     """Every job of the quick preset as text, by rule and wildcards."""
     p = plan(root)
-    found = {"store": p.store(), f"select {BEAM}": p.select(BEAM)}
+    found = {"store": p.store(), f"judge {BEAM}": p.judge(BEAM), f"select {BEAM}": p.select(BEAM)}
     found |= {f"statics {BEAM}": p.statics(BEAM), f"validation {BEAM}": p.validation(BEAM)}
     found |= {f"train {key}": p.train(key) for key in p.runs}
     for variant in p.variants(BEAM):
@@ -54,7 +54,7 @@ def change(root: Path, file: str, keys: str, value: object) -> None:
 
 
 ALL_DATA = {"simulate", "manifest"}
-JUDGED = {"select", "respond", "cost"}
+JUDGED = {"judge", "respond", "cost"}
 OVER = f"overrides.{BEAM}"
 
 CHANGES = [
@@ -68,10 +68,10 @@ CHANGES = [
     (QUICK, f"{OVER}.evaluation.repeats", 2, {"cost"}),
     (QUICK, f"{OVER}.evaluation.described_simulations.as_printed", 2, {"cost"}),
     (QUICK, f"{OVER}.evaluation.simulations", 3, {"respond", "cost"}),
-    (QUICK, f"{OVER}.evaluation.long_responses", 3, {"select"}),
+    (QUICK, f"{OVER}.evaluation.long_responses", 3, {"judge"}),
     (QUICK, f"{OVER}.evaluation.duration_s", 0.3, JUDGED),
     (QUICK, f"{OVER}.statics.tip_loads_N", [0, 10], {"statics"}),
-    (SWEEP, "spaces.0.epochs", [21], {"train", "select"}),
+    (SWEEP, "spaces.0.epochs", [21], {"train", "judge", "select"}),
     ("config/config.yaml", "tracking.uri", "http://127.0.0.1:5000", {"store"}),
     ("config/config.yaml", "timing.cores", 1, set()),
     ("config/config.yaml", "results", "elsewhere", set()),
@@ -104,7 +104,10 @@ def test_a_new_value_of_the_sweep_adds_its_runs_and_leaves_the_others(root):
     added = after.keys() - before.keys()
     assert len(added) == 2
     assert all(name.startswith("train hnn-") for name in added)
-    assert {name for name in before if before[name] != after[name]} == {f"select {BEAM}"}
+    assert {name for name in before if before[name] != after[name]} == {
+        f"judge {BEAM}",
+        f"select {BEAM}",
+    }
 
 
 def test_a_run_is_named_by_its_content(root):
@@ -125,6 +128,6 @@ def test_the_papers_recipe_stands_beside_the_default_sweep():
     configuration = load(REPOSITORY, ["config/config.yaml", "config/presets/paper.yaml"])
     sweeps = Plan(configuration).select(BEAM)["sweeps"]
     assert set(sweeps) == {"default", "paper"}
-    assert [key.split("-")[0] for key in sweeps["paper"]["hamiltonian"]] == ["hnn", "mlp"]
+    assert [key.split("-")[0] for key in sweeps["paper"]] == ["hnn", "mlp"] * 2
     alone = Plan(load(REPOSITORY, ["config/config.yaml"]))
     assert alone.runs.keys() < Plan(configuration).runs.keys()

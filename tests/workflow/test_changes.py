@@ -14,7 +14,8 @@ DRAWN_FROM_RESPONSES = {f"draw_{BEAM}_figure_{number}": 1 for number in (10, 12,
 DRAWN_FROM_COSTS = {f"draw_{BEAM}_cost_accuracy": 1, f"tabulate_{BEAM}_cost": 1, "join_cost": 1}
 DRAWN_FROM_RUNS = {f"draw_{BEAM}_training_loss": 1, f"tabulate_{BEAM}_training": 1, "join_training": 1}
 SELECTED = {
-    f"select_{BEAM}": 1,
+    f"judge_{BEAM}": 1,
+    "select": 1,
     **EVALUATED,
     **DRAWN_FROM_RESPONSES,
     **DRAWN_FROM_COSTS,
@@ -57,7 +58,7 @@ def test_changing_a_value(copy_of_quick, file, keys, value, jobs):
         (
             "flexsurr/beam/compiled.py",
             {"simulate_shard", "statics", "validation", "manifest", "train", "responses", "evaluate"},
-            {"tracking_store", f"draw_{BEAM}_figure_05_figure_06_figure_11"},
+            {"tracking_store"},
         ),
         (
             "flexsurr/evaluation/timing.py",
@@ -72,9 +73,13 @@ def test_changing_a_value(copy_of_quick, file, keys, value, jobs):
         (
             "flexsurr/report/style.py",
             {f"draw_{BEAM}_figure_10", f"draw_{BEAM}_cost_accuracy"},
-            {"simulate_shard", "train", "evaluate", "responses", "statics", f"select_{BEAM}"},
+            {"simulate_shard", "train", "evaluate", "responses", "statics", f"judge_{BEAM}", "select"},
         ),
-        ("flexsurr/workflow/plan.py", set(), {"simulate_shard", "train", "evaluate", f"select_{BEAM}"}),
+        (
+            "flexsurr/workflow/plan.py",
+            set(),
+            {"simulate_shard", "train", "evaluate", f"judge_{BEAM}", "select"},
+        ),
     ],
 )
 def test_editing_code(copy_of_quick, file, made_again, left_alone):

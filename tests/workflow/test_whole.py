@@ -87,8 +87,8 @@ def test_one_surrogate_of_each_architecture_is_selected(quick):
 
 def test_every_rule_leaves_a_log(quick):
     logs = {path.relative_to(quick.results / "logs").parts[0] for path in quick.results.glob("logs/**/*.log")}
-    assert {"simulate", "manifest", "statics", "validation", "train", "select", "evaluate"} <= logs
-    assert {"responses", "figures", "tables", "tracking_store.log"} <= logs
+    assert {"simulate", "manifest", "statics", "validation", "train", "judge", "select"} <= logs
+    assert {"evaluate", "responses", "figures", "tables", "tracking_store.log"} <= logs
 
 
 def test_nothing_half_written_is_left(quick):

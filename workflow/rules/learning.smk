@@ -44,7 +44,7 @@ for study in STUDIES:
 
     rule:
         name:
-            f"select_{study}"
+            f"judge_{study}"
         input:
             fits=expand(
                 f"{RESULTS}/runs/{{run_id}}/fit.json", run_id=plan.runs_of(study)
@@ -52,20 +52,38 @@ for study in STUDIES:
             weights=expand(
                 f"{RESULTS}/runs/{{run_id}}/weights.npz", run_id=plan.runs_of(study)
             ),
-            store=ancient(rules.tracking_store.output[0]),
         output:
-            selection=f"{RESULTS}/selected/{study}.json",
-            metrics=expand(
+            expand(
                 f"{RESULTS}/runs/{{run_id}}/metrics.json", run_id=plan.runs_of(study)
             ),
         log:
-            f"{RESULTS}/logs/select/{study}.log",
+            f"{RESULTS}/logs/judge/{study}.log",
         params:
-            job=json.dumps(plan.select(study), sort_keys=True),
-            code=code("select"),
+            job=json.dumps(plan.judge(study), sort_keys=True),
+            code=code("judge"),
             runs=f"{RESULTS}/runs",
         message:
             f"judging the surrogates of {study}"
         shell:
-            "python -m flexsurr.cli.select --job {params.job:q} --runs {params.runs:q}"
-            " --store {input.store:q} --output {output.selection:q} > {log:q} 2>&1"
+            "python -m flexsurr.cli.judge --job {params.job:q} --runs {params.runs:q} > {log:q} 2>&1"
+
+
+rule select:
+    input:
+        metrics=lambda w: expand(
+            f"{RESULTS}/runs/{{run_id}}/metrics.json", run_id=plan.runs_of(w.study)
+        ),
+        store=ancient(rules.tracking_store.output[0]),
+    output:
+        f"{RESULTS}/selected/{{study}}.json",
+    log:
+        f"{RESULTS}/logs/select/{{study}}.log",
+    params:
+        job=job("select", "study"),
+        code=code("select"),
+        runs=f"{RESULTS}/runs",
+    message:
+        "choosing the surrogates of {wildcards.study}"
+    shell:
+        "python -m flexsurr.cli.select --job {params.job:q} --runs {params.runs:q}"
+        " --store {input.store:q} --output {output:q} > {log:q} 2>&1"

@@ -52,7 +52,9 @@ for table in TABLES:
                     for read in TABLES[table].reads
                     for file in plan.files(study, read)
                 ],
-                caption=f"{workflow.basedir}/workflow/report/{table}.rst",
+                caption=os.path.relpath(
+                    f"{workflow.basedir}/workflow/report/{table}.rst"
+                ),
             output:
                 csv=f"{RESULTS}/tables/{study}/{table}.csv",
                 page=report(
