@@ -56,14 +56,15 @@ def _histories(response: pd.DataFrame, forced: bool) -> Figure:
     variants = [variant for variant in VARIANTS if variant in set(response["variant"])]
     figure = new_figure(PAGE_IN, 5.0)
     grid = figure.subplots(3, len(variants), sharey="row", squeeze=False)
+    models = _models(response)
     for column, variant in zip(grid.T, variants, strict=True):
         shown = response[response["variant"] == variant]
         reference = shown[shown["model"] == "reference"]
         end_s, load_end_s = float(reference["t_s"].max()), float(shown["load_end_s"].iloc[0])
         first_s = max(0.0, load_end_s - 0.55 * WINDOW_S) if forced else 0.0
         for ax, start_s in ((column[0], first_s), (column[1], max(0.0, end_s - WINDOW_S))):
-            _window(ax, shown, start_s, min(start_s + WINDOW_S, end_s))
-        _errors(column[2], shown, end_s)
+            _window(ax, shown, models, start_s, min(start_s + WINDOW_S, end_s))
+        _errors(column[2], shown, models, end_s)
         if forced:
             for ax in column:
                 ax.axvspan(0.0, load_end_s, color=LOADED, linewidth=0, zorder=0)
@@ -76,7 +77,7 @@ def _histories(response: pd.DataFrame, forced: bool) -> Figure:
     grid[2, 0].set_ylabel("tip error [% of the peak]")
     handles = [
         Line2D([], [], color=colour(model), marker=_marker(k), markerfacecolor="white", label=label(model))
-        for k, model in enumerate(_models(response))
+        for k, model in enumerate(models)
     ]
     shade = [Patch(color=LOADED, label="force acts")] if forced else []
     figure.legend(handles=[*handles, *shade], loc="outside upper center", ncols=len(handles) + len(shade))
@@ -84,13 +85,12 @@ def _histories(response: pd.DataFrame, forced: bool) -> Figure:
     return figure
 
 
-def _window(ax: Axes, shown: pd.DataFrame, start_s: float, end_s: float) -> None:
+def _window(ax: Axes, shown: pd.DataFrame, models: Sequence[str], start_s: float, end_s: float) -> None:
     """Tip height of every model between two times.
 
     The reference lies over the surrogates' lines and under their markers, which take turns: a model
     that coincides with it still shows its markers, one that strays its line.
     """
-    models = _models(shown)
     for k, model in enumerate(models):
         part = shown[(shown["model"] == model) & shown["t_s"].between(start_s, end_s)]
         t, z = part["t_s"].to_numpy(), part["tip_z_m"].to_numpy()
@@ -112,11 +112,12 @@ def _window(ax: Axes, shown: pd.DataFrame, start_s: float, end_s: float) -> None
     ax.set(xlim=(start_s, end_s), xlabel="time [s]")
 
 
-def _errors(ax: Axes, shown: pd.DataFrame, end_s: float) -> None:
+def _errors(ax: Axes, shown: pd.DataFrame, models: Sequence[str], end_s: float) -> None:
     """The largest tip error so far, of every surrogate, on a logarithmic scale."""
-    models = _models(shown)
     for k, model in enumerate(models[1:], start=1):
         part = shown[(shown["model"] == model) & (shown["t_s"] > 0.0)]
+        if part.empty:
+            continue
         t = part["t_s"].to_numpy()
         worst = np.maximum.accumulate(np.maximum(part["tip_error_percent"].to_numpy(), SMALLEST_PERCENT))
         times = end_s * (np.arange(6) + k / len(models)) / 6.0
@@ -136,9 +137,9 @@ def _errors(ax: Axes, shown: pd.DataFrame, end_s: float) -> None:
     ax.set(xlim=(0.0, end_s), xlabel="time [s]")
 
 
-def _models(shown: pd.DataFrame) -> Sequence[str]:
-    """The models in order of appearance, the reference first."""
-    return ["reference", *(model for model in shown["model"].unique() if model != "reference")]
+def _models(response: pd.DataFrame) -> Sequence[str]:
+    """The models by name, the reference first: the same order, and so the same markers, in every panel."""
+    return ["reference", *sorted(set(response["model"]) - {"reference"})]
 
 
 def _marker(k: int) -> str:
