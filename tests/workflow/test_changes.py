@@ -43,7 +43,7 @@ LEARNT = {"manifest": 2, "train": 6, **SELECTED}
                 **{f"join_{name}": 1 for name in ("static_tip", "natural_frequencies")},
             },
         ),
-        ("config/config.yaml", "tracking.uri", "http://127.0.0.1:9", {}),
+        ("config/config.yaml", "tracking.uri", "http://127.0.0.1:9", {"tracking_store": 1}),
         ("config/config.yaml", "timing.cores", 1, {}),
     ],
 )

@@ -22,7 +22,7 @@ for study in STUDIES:
                         caption=f"../report/{name}.rst",
                         category=study,
                         subcategory="figures",
-                        labels={"shows": FIGURES[name].title, "name": name},
+                        labels={"figure": name, "shows": FIGURES[name].title},
                     )
                     for name in same
                 ),
@@ -62,7 +62,7 @@ for table in TABLES:
                     caption=f"../report/{table}.rst",
                     category=study,
                     subcategory="tables",
-                    labels={"shows": TABLES[table].title, "name": table},
+                    labels={"table": table, "shows": TABLES[table].title},
                 ),
             log:
                 f"{RESULTS}/logs/tables/{study}-{table}.log",
