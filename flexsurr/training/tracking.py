@@ -9,6 +9,8 @@ import json
 import logging
 import math
 import os
+import signal
+import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -137,14 +139,16 @@ def tracked(store: Store, study: str, run_key: str, parameters: Mapping[str, Any
     """
     trial = Trial()
     page = _Page(store)
-    run = page.attempt(lambda client: _start(client, store, study, run_key, parameters))
-    if run is not None:
-        trial._report = lambda metrics: page.attempt(lambda client: _send(client, run, metrics))
-        trial._keep = lambda metrics, tags, files: page.attempt(
-            lambda client: _keep(client, run, metrics, tags, files)
-        )
+    run = None
     status = "KILLED"
     try:
+        with _signals_wait():
+            run = page.attempt(lambda client: _start(client, store, study, run_key, parameters))
+        if run is not None:
+            trial._report = lambda metrics: page.attempt(lambda client: _send(client, run, metrics))
+            trial._keep = lambda metrics, tags, files: page.attempt(
+                lambda client: _keep(client, run, metrics, tags, files)
+            )
         yield trial
         status = "FINISHED" if trial.status == "finished" else "FAILED"
     except Exception as error:
@@ -152,8 +156,29 @@ def tracked(store: Store, study: str, run_key: str, parameters: Mapping[str, Any
         raise
     finally:
         if run is not None:
-            trial.send()
-            page.insist(lambda client: _end(client, run, status, trial.reason))
+            with _signals_wait():
+                trial.send()
+                page.insist(lambda client: _end(client, run, status, trial.reason))
+
+
+@contextmanager
+def _signals_wait() -> Iterator[None]:
+    """Heed SIGTERM and Ctrl-C after the block: either in the middle would leave a run RUNNING for ever."""
+    if threading.current_thread() is not threading.main_thread():
+        yield  # signals are the main thread's, and only it may say what they do
+        return
+    came: list[int] = []
+    before = {
+        waiting: signal.signal(waiting, lambda number, frame: came.append(number))
+        for waiting in (signal.SIGTERM, signal.SIGINT)
+    }
+    try:
+        yield
+    finally:
+        for waiting, handler in before.items():
+            signal.signal(waiting, handler)
+        for number in came:
+            signal.raise_signal(number)
 
 
 def end_sweep(store: Store, study: str, final: Mapping[str, Mapping[str, Any]]) -> None:

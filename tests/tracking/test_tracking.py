@@ -1,11 +1,15 @@
 import logging
+import os
+import signal
 import sqlite3
+import sys
 from multiprocessing import get_context
 from pathlib import Path
 
 import pytest
 from mlflow import MlflowClient
 
+from flexsurr.training import tracking
 from flexsurr.training.tracking import (
     RUN_KEY,
     Store,
@@ -82,6 +86,28 @@ def test_a_job_told_to_stop_ends_its_run(made, stop):
     with pytest.raises(type(stop)), tracked(made, "cantilever", key, {}):
         raise stop
     assert run_of(made, key).info.status == "KILLED"
+
+
+@pytest.mark.parametrize("moment", ["_start", "_end"])
+def test_a_signal_in_the_middle_of_writing_waits(made, monkeypatch, moment):
+    """At its worst moment: what was begun is finished, and the signal is heeded right after."""
+    whole = getattr(tracking, moment)
+
+    def interrupted(*arguments):
+        os.kill(os.getpid(), signal.SIGTERM)
+        result = whole(*arguments)
+        os.kill(os.getpid(), signal.SIGTERM)
+        return result
+
+    monkeypatch.setattr(tracking, moment, interrupted)
+    before = signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(143))
+    try:
+        with pytest.raises(SystemExit), tracked(made, "cantilever", f"hnn{moment}", {}):
+            pass
+    finally:
+        signal.signal(signal.SIGTERM, before)
+    ended = {"_start": "KILLED", "_end": "FINISHED"}
+    assert run_of(made, f"hnn{moment}").info.status == ended[moment]
 
 
 def test_a_run_left_running_is_removed_when_its_job_starts_again(made):
