@@ -39,7 +39,7 @@ check: $(INSTALLED)
 
 # The quick tests first; those that run the workflow and look at its pages last.
 test: check browser
-	python -m pytest --ignore=tests/workflow tests
+	OMP_NUM_THREADS=1 python -m pytest -n logical --dist loadfile --ignore=tests/workflow tests
 	python -m pytest tests/workflow
 
 ui: $(INSTALLED)
