@@ -1,0 +1,206 @@
+"""The aircraft: geometry, stiffness and mass of a transport with a tail (config/aircraft/*.yaml).
+
+Axes of the file: x aft from the nose, y to the right, z up. Every block says where its numbers come from.
+"""
+
+import math
+from pathlib import Path
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, ValidationInfo, field_validator, model_validator
+
+from flexsurr.config.aircraft_mass import Masses
+from flexsurr.config.merging import Source as FileOfValues
+from flexsurr.config.merging import build
+from flexsurr.config.reading import read_yaml
+from flexsurr.config.schema import Record
+from flexsurr.config.stiffness import Stiffness
+from flexsurr.config.structure import NotNegative, Positive
+
+Source = Literal["published", "transcribed", "digitised", "assumed"]
+Fraction = Annotated[float, Field(ge=0.0, le=1.0)]
+Point = tuple[float, float, float]
+Angle = Annotated[float, Field(gt=-90.0, lt=90.0)]
+
+SURFACES = ("wing", "horizontal_tail", "vertical_tail")
+TWO_SIDED = ("wing", "horizontal_tail")
+
+# Parts must add up to the published mass to within this; they are given in whole kilograms.
+_MASS_TOLERANCE_KG = 0.5
+_SPAN_TOLERANCE_M = 0.01
+
+
+class Published(Record):
+    """What the paper of the study says of the aircraft; the model is held against it."""
+
+    source: Source
+    wing_span_m: Positive
+    fuselage_length_m: Positive
+    mass_kg: Positive
+
+
+class Reference(Record):
+    """Reference quantities of the coefficients; the span is the published one."""
+
+    source: Source
+    area_m2: Positive
+    chord_m: Positive
+
+
+class Section(Record):
+    """A trapezoid of a lifting surface: first and last value of chord and twist, sweep of its leading edge.
+
+    `length_m` is measured along the surface, in the plane that its dihedral turns.
+    """
+
+    length_m: Positive
+    chord_m: tuple[Positive, Positive]
+    sweep_deg: Angle
+    dihedral_deg: Angle = 0.0
+    twist_deg: tuple[Angle, Angle] = (0.0, 0.0)
+
+
+class Surface(Record):
+    """A lifting surface: trapezoids from the root outwards, and the line its beam follows.
+
+    `root_m` is the leading-edge point of the first section. `elastic_axis` is a fraction of the chord:
+    one value for the whole beam, or one at its start and one at the outer end of each section it
+    crosses, linear in between. `beam_starts_at_m` is y of its first node (height above the root for the
+    vertical tail).
+    """
+
+    source: Source
+    root_m: Point
+    incidence_deg: Angle = 0.0
+    sections: Annotated[tuple[Section, ...], Field(min_length=1)]
+    elastic_axis: Annotated[tuple[Fraction, ...], Field(min_length=1)]
+    beam_starts_at_m: NotNegative = 0.0
+
+    @model_validator(mode="after")
+    def _chords_meet(self) -> Self:
+        for i, (inner, outer) in enumerate(zip(self.sections, self.sections[1:], strict=False), start=1):
+            if inner.chord_m[1] != outer.chord_m[0]:
+                raise ValueError(
+                    f"sections[{i}].chord_m: begins with {outer.chord_m[0]}, where the section "
+                    f"before ends with {inner.chord_m[1]}"
+                )
+        return self
+
+
+class Surfaces(Record):
+    """Wing and tails; the wing and the horizontal tail have a left side that mirrors the right."""
+
+    wing: Surface
+    horizontal_tail: Surface
+    vertical_tail: Surface
+
+
+class ControlSurface(Record):
+    """A flap behind a hinge: `hinge` a fraction of the chord, `span` fractions of the surface's semi-span."""
+
+    surface: str
+    hinge: Fraction
+    span: tuple[Fraction, Fraction]
+
+    @field_validator("surface")
+    @classmethod
+    def _is_there(cls, surface: str) -> str:
+        if surface not in SURFACES:
+            raise ValueError(f"no such surface; allowed: {', '.join(SURFACES)}")
+        return surface
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Self:
+        if self.span[0] >= self.span[1]:
+            raise ValueError(f"span: begins at {self.span[0]}, not before its end {self.span[1]}")
+        return self
+
+
+class ControlSurfaces(Record):
+    """Elevator and aileron (a left and a right one each), rudder, and the surface i_t turns as a whole."""
+
+    source: Source
+    elevator: ControlSurface
+    aileron: ControlSurface
+    rudder: ControlSurface
+    trimmed_surface: Literal["horizontal_tail"]
+
+    @field_validator("elevator", "aileron")
+    @classmethod
+    def _has_two_sides(cls, control: ControlSurface, info: ValidationInfo) -> ControlSurface:
+        if control.surface not in TWO_SIDED:
+            raise ValueError(
+                f"{info.field_name} has a left and a right half, {control.surface} has not; "
+                f"allowed: surface {' or '.join(TWO_SIDED)}"
+            )
+        return control
+
+
+class Fuselage(Record):
+    """A body of revolution about a straight line, for its beam and for the moment of its flow (Munk).
+
+    `fullness` is its volume over that of its circumscribed cylinder.
+    """
+
+    source: Source
+    diameter_m: Positive
+    axis_z_m: float
+    fullness: Annotated[float, Field(gt=0.0, le=1.0)]
+
+
+class Aerodynamics(Record):
+    """What the lattice does not know."""
+
+    source: Source
+    parasite_drag_coefficient: NotNegative
+
+
+class Aircraft(Record):
+    """An aircraft, with everything its stick model, its lattice and its flight need."""
+
+    name: str
+    published: Published
+    reference: Reference
+    surfaces: Surfaces
+    control_surfaces: ControlSurfaces
+    fuselage: Fuselage
+    stiffness: Stiffness
+    mass: Masses
+    aerodynamics: Aerodynamics
+    structural_damping_ratio: Annotated[float, Field(ge=0.0, lt=1.0)]
+
+    @model_validator(mode="after")
+    def _agrees_with_itself(self) -> Self:
+        wing = self.surfaces.wing
+        half = wing.root_m[1] + sum(
+            s.length_m * math.cos(math.radians(s.dihedral_deg)) for s in wing.sections
+        )
+        if abs(2.0 * half - self.published.wing_span_m) > _SPAN_TOLERANCE_M:
+            raise ValueError(
+                f"surfaces.wing.sections: span {2.0 * half:.6g} m, published.wing_span_m is "
+                f"{self.published.wing_span_m:.6g}"
+            )
+        last = max(
+            self.mass.payload.x_m[1], self.mass.main_gear.x_m, self.mass.fuselage_and_systems.centroid_x_m
+        )
+        if last > self.published.fuselage_length_m:
+            raise ValueError(
+                f"mass: a part lies at x = {last:.6g} m, behind the fuselage, which is "
+                f"{self.published.fuselage_length_m} m long"
+            )
+        total = self.mass.total_kg
+        if abs(total - self.published.mass_kg) > _MASS_TOLERANCE_KG:
+            raise ValueError(
+                f"mass: the parts add up to {total:.10g} kg, published.mass_kg is "
+                f"{self.published.mass_kg:.10g}"
+            )
+        return self
+
+
+def load_aircraft(path: Path, shown: str | None = None) -> Aircraft:
+    """The aircraft of the YAML file at `path`, named `shown` in errors.
+
+    Raises ConfigurationError with one line a mistake: file, key, value and what is allowed.
+    """
+    name = shown or str(path)
+    return build(Aircraft, [FileOfValues(name, read_yaml(path, name))])
