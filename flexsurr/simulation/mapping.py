@@ -1,0 +1,76 @@
+"""A compiled function of vectors y = g(u), the twin of `rhs` for what has no states of its own.
+
+Equations of motion call `mapping(kernel, u, y, work)` for, say, aerodynamic coefficients; the class of
+`kernel` chooses the function when they are compiled, so that one function replaces another without a
+line changed, and the machine code is kept on disk (see `rhs`).
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import njit, types
+from numba.extending import overload
+
+from flexsurr.kernel_cache import check_belongs
+from flexsurr.simulation.rhs import FLOATING_POINT, Array
+
+
+def mapping(kernel: Any, u: Array, y: Array, work: Array) -> None:
+    """Write y = g(u) into `y`. `work` is scratch of at least the mapping's `work_size`.
+
+    Callable from compiled code only; from Python call a `CompiledMapping` or `evaluate_mapping`.
+    """
+    raise TypeError(f"no mapping is registered for {type(kernel).__name__}; call mapping from compiled code")
+
+
+def implements_mapping(
+    kernel_class: type, inline: bool = False, allocates: bool = False
+) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Register the decorated function (kernel, u, y, work) -> None as `mapping` of `kernel_class`.
+
+    Its arguments must carry these names. As with `implements_rhs`, loops and not slices; a function that
+    `allocates` (for LAPACK, say) pays for numba's reference counts.
+    """
+    options: dict[str, Any] = {"fastmath": FLOATING_POINT, "error_model": "numpy", "forceinline": inline}
+    if not allocates:
+        options["_nrt"] = False
+
+    check_belongs(kernel_class)
+
+    def register(equations: Callable[..., None]) -> Callable[..., None]:
+        @overload(mapping, jit_options=options)
+        def resolve(kernel, u, y, work):
+            if isinstance(kernel, types.BaseNamedTuple) and kernel.instance_class is kernel_class:
+                return equations
+            return None
+
+        return equations
+
+    return register
+
+
+@njit(cache=True, error_model="numpy")
+def evaluate_mapping(kernel, u, y, work):
+    """`mapping` as a call from Python, row by row: `u` (m, inputs), `y` (m, outputs) is written."""
+    for row in range(len(u)):
+        mapping(kernel, u[row], y[row], work)
+
+
+@dataclass(frozen=True, eq=False)
+class CompiledMapping:
+    """A kernel of `mapping`, the size of its scratch, and the names of its inputs and outputs."""
+
+    kernel: NamedTuple
+    work_size: int
+    input_names: tuple[str, ...]
+    output_names: tuple[str, ...]
+
+    def __call__(self, u: Array) -> Array:
+        """The outputs (..., outputs) at the inputs `u` (..., inputs)."""
+        u = np.ascontiguousarray(u, dtype=np.float64)
+        rows = u.reshape(-1, len(self.input_names))
+        y = np.empty((len(rows), len(self.output_names)))
+        evaluate_mapping(self.kernel, rows, y, np.empty(max(self.work_size, 1)))
+        return y.reshape(*u.shape[:-1], len(self.output_names))
