@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+import pandas as pd
+
 from flexsurr.beam import EquilibriumNotFound, reduce
 from flexsurr.cli.command import Job, command
 from flexsurr.cli.frames import write_frame
@@ -14,9 +16,10 @@ from flexsurr.evaluation import natural_frequencies, static_tip
 def main(job: Job, statics: Path, frequencies: Path) -> None:
     """Write both tables."""
     study = part_of(Study, job["part"])
-    basis = reduce(Structure.model_validate(job["structure"]), study.reduction)
-    write_frame(statics, static_tip(study, basis))
-    write_frame(frequencies, natural_frequencies(basis))
+    structures = [Structure.model_validate(s) for s in (job["structure"], *job["frequencies_also_of"])]
+    bases = [reduce(structure, study.reduction) for structure in structures]
+    write_frame(statics, static_tip(study, bases[0]))
+    write_frame(frequencies, pd.concat([natural_frequencies(basis) for basis in bases], ignore_index=True))
 
 
 if __name__ == "__main__":

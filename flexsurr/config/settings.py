@@ -48,6 +48,7 @@ class ResolvedStudy:
     study: Study
     structure: Structure
     sweeps: Mapping[str, Sweep]
+    frequencies_also_of: tuple[Structure, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -111,19 +112,24 @@ def _load_study(root: Path, name: str, sources: Sequence[Source]) -> ResolvedStu
         return read_yaml(root / path, path)
 
     problems: list[str] = []
-    structure: Structure | None = None
+    structures: list[Structure] = []
     sweeps: dict[str, Sweep] = {}
-    try:
-        structure = build(Structure, [Source(study.structure, read(("structure",), study.structure))])
-    except ConfigurationError as error:
-        problems += error.problems
+    for key, path in (
+        ("structure", study.structure),
+        *(("frequencies_also_of", p) for p in study.frequencies_also_of),
+    ):
+        try:
+            structures.append(build(Structure, [Source(path, read((key,), path))]))
+        except ConfigurationError as error:
+            problems += error.problems
     for sweep, path in study.sweeps.items():
         try:
             sweeps[sweep] = build(Sweep, [Source(path, read(("sweeps", sweep), path))])
         except ConfigurationError as error:
             problems += error.problems
-    if structure is None or problems:
+    if problems:
         raise ConfigurationError(problems)
+    structure, *others = structures
     modes, most = study.reduction.modes, structure.coordinates
     if modes > most:
         holder = _holder(study_sources, ("reduction", "modes"))
@@ -133,7 +139,7 @@ def _load_study(root: Path, name: str, sources: Sequence[Source]) -> ResolvedStu
                 f"the coordinates of {study.structure}"
             ]
         )
-    return ResolvedStudy(name, study, structure, sweeps)
+    return ResolvedStudy(name, study, structure, sweeps, tuple(others))
 
 
 def _holder(sources: Sequence[Source], key: Sequence[str]) -> str:

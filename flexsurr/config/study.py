@@ -148,10 +148,12 @@ class Study(Record):
     """One study. Paths are relative to the folder that holds the Snakefile.
 
     `sweeps` names each sweep of the study; the best surrogates of each stand side by side in the tables.
-    The one called `default` is the one the figures show.
+    The one called `default` is the one the figures show. `frequencies_also_of` names structures whose
+    natural frequencies are tabulated beside those of the study's own.
     """
 
     structure: str
+    frequencies_also_of: tuple[str, ...] = ()
     sweeps: Annotated[dict[str, str], Field(min_length=1)]
     seed: Annotated[int, Field(ge=0)] = 2024
     variants: Annotated[tuple[Variant, ...], Field(min_length=1)] = ("hamiltonian", "as_printed")

@@ -152,7 +152,9 @@ class Plan:
 
     def statics(self, study: str) -> Job:
         """Static deflection and natural frequencies."""
-        return self._part(study, STATICS)
+        others = self.studies[study].frequencies_also_of
+        also = [structure.model_dump(mode="json") for structure in others]
+        return {**self._part(study, STATICS), "frequencies_also_of": also}
 
     def validation(self, study: str) -> Job:
         """The reduced model against the full one."""
