@@ -1,0 +1,196 @@
+"""Horseshoe lattices: several lifting surfaces, each a row of trapezoids, cut into panels.
+
+The lattice lies in planes parallel to x: dihedral shapes it, while incidence and twist turn the normals
+alone, as control surfaces and elastic motion do later. The bound vortex runs along a quarter of each
+panel's chord, left to right (upwards on a vertical surface), the control point lies at three quarters
+of its middle chord.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexsurr.aerodynamics.features import CONTROLS
+from flexsurr.config.aircraft import ControlSurface, Surface
+from flexsurr.simulation.rhs import Array
+
+MIRROR = np.array([1.0, -1.0, 1.0])
+_ROUNDING = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Lattice:
+    """N panels in geometry axes [m]: x aft, y right, z up.
+
+    `start`, `end` (N, 3) of the bound vortices; `control` points (N, 3); unit `normal` (N, 3), upwards
+    or, on a vertical surface, to the left; `hinge` (N, CONTROLS, 3): the unit axis about which each
+    control turns the normal of the panel, zero where it does not; `corners` (N, 4, 3), leading edge
+    first, for drawings; `surface` (N,): which of `surfaces` a panel belongs to.
+    """
+
+    start: Array
+    end: Array
+    control: Array
+    normal: Array
+    hinge: Array
+    corners: Array
+    surface: NDArray[np.int64]
+    surfaces: tuple[str, ...]
+
+    def __len__(self) -> int:
+        """Number of panels N."""
+        return len(self.start)
+
+    @property
+    def bound(self) -> Array:
+        """Midpoints (N, 3) of the bound vortices, where the forces act."""
+        return 0.5 * (self.start + self.end)
+
+    @classmethod
+    def joined(cls, parts: Sequence["Lattice"]) -> "Lattice":
+        """One lattice of several."""
+        names = tuple(dict.fromkeys(name for part in parts for name in part.surfaces))
+        fields = ("start", "end", "control", "normal", "hinge", "corners")
+        arrays = {name: np.concatenate([getattr(part, name) for part in parts]) for name in fields}
+        places = [[names.index(name) for name in part.surfaces] for part in parts]
+        surface = [np.array(place)[part.surface] for place, part in zip(places, parts, strict=True)]
+        return cls(**arrays, surface=np.concatenate(surface), surfaces=names)
+
+    def mirrored(self) -> "Lattice":
+        """The other side of the plane y = 0; without hinges, whose signs are the controls' affair."""
+        normal = self.normal * MIRROR
+        return Lattice(
+            start=self.end * MIRROR,  # bound vortices still run from left to right
+            end=self.start * MIRROR,
+            control=self.control * MIRROR,
+            normal=normal,
+            hinge=np.zeros_like(self.hinge),
+            corners=self.corners[:, [1, 0, 3, 2]] * MIRROR,
+            surface=self.surface,
+            surfaces=self.surfaces,
+        )
+
+
+def panel(
+    surface: Surface,
+    name: str,
+    spanwise: int,
+    chordwise: int,
+    *,
+    vertical: bool = False,
+    flap: ControlSurface | None = None,
+) -> tuple[Lattice, Array]:
+    """The right (or only) half of `surface`: `spanwise` strips of `chordwise` panels, strip by strip.
+
+    Strips share the sections, and the parts of the span that `flap` makes, by length; panels end at its
+    hinge. The array (N, 3) holds unit vectors along the hinge, outwards, for the panels of the flap and
+    zeros elsewhere. Raises ValueError for fewer strips or panels than there are parts to share them.
+    """
+    outline = _Outline(surface, vertical)
+    stations = outline.stations(spanwise, flap.span if flap else ())
+    edges = _chordwise_edges(chordwise, flap.hinge if flap else 0.0)
+    leading, chord, _ = outline.at(stations)
+    _, _, angle = outline.at(0.5 * (stations[1:] + stations[:-1]))
+    x_axis = np.array([1.0, 0.0, 0.0])
+
+    def points(fractions: Array) -> Array:
+        """(strip edges, fractions, 3)."""
+        return leading[:, None] + (chord[:, None] * fractions)[..., None] * x_axis
+
+    width = np.diff(edges)
+    quarter, three_quarters = points(edges[:-1] + 0.25 * width), points(edges[:-1] + 0.75 * width)
+    start, end = quarter[:-1], quarter[1:]
+    across = leading[1:] - leading[:-1]
+    across[:, 0] = 0.0
+    across /= np.linalg.norm(across, axis=1)[:, None]
+    flat = np.cross(x_axis, across)
+    # turned about the strip's own axis, leading edge up
+    normal = np.cos(angle)[:, None] * flat + np.sin(angle)[:, None] * np.cross(across, flat)
+    grid = points(edges)
+    corners = np.stack([grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]], axis=2)
+    count = spanwise * chordwise
+    axes = np.zeros((spanwise, chordwise, 3))
+    if flap is not None:
+        line = points(np.array([flap.hinge]))[:, 0]
+        direction = (line[1:] - line[:-1]) / np.linalg.norm(line[1:] - line[:-1], axis=1)[:, None]
+        along = outline.span_fraction(0.5 * (stations[1:] + stations[:-1]))
+        strips = (along > flap.span[0]) & (along < flap.span[1])
+        behind = edges[:-1] > flap.hinge - _ROUNDING
+        axes[np.ix_(strips, behind)] = direction[strips, None]
+    lattice = Lattice(
+        start=start.reshape(count, 3),
+        end=end.reshape(count, 3),
+        control=(0.5 * (three_quarters[:-1] + three_quarters[1:])).reshape(count, 3),
+        normal=np.repeat(normal, chordwise, axis=0),
+        hinge=np.zeros((count, CONTROLS, 3)),
+        corners=corners.reshape(count, 4, 3),
+        surface=np.zeros(count, dtype=np.int64),
+        surfaces=(name,),
+    )
+    return lattice, axes.reshape(count, 3)
+
+
+class _Outline:
+    """Leading edge, chord and angle of a surface along its own length."""
+
+    def __init__(self, surface: Surface, vertical: bool) -> None:
+        self._lengths = np.array([section.length_m for section in surface.sections])
+        self._ends = np.concatenate([[0.0], np.cumsum(self._lengths)])
+        self._surface = surface
+        dihedral = np.radians([section.dihedral_deg for section in surface.sections])
+        sweep = np.radians([section.sweep_deg for section in surface.sections])
+        if vertical:
+            dihedral = dihedral + 0.5 * np.pi
+        # sweep is that of the leading edge against its own projection on the y-z plane
+        steps = np.stack([np.tan(sweep), np.cos(dihedral), np.sin(dihedral)], axis=1)
+        self._corners = np.array(surface.root_m) + np.concatenate(
+            [np.zeros((1, 3)), np.cumsum(steps * self._lengths[:, None], axis=0)]
+        )
+        height = self._corners[:, 2] - self._corners[0, 2]
+        self._spans = height / height[-1] if vertical else self._corners[:, 1] / self._corners[-1, 1]
+
+    def stations(self, strips: int, breaks: Sequence[float]) -> Array:
+        """Edges (strips + 1,) of the strips along the length."""
+        inner = np.interp(np.asarray(breaks, dtype=np.float64), self._spans, self._ends)
+        parts = np.sort(np.concatenate([self._ends, inner]))
+        parts = parts[np.concatenate([[True], np.diff(parts) > _ROUNDING])]
+        lengths = np.diff(parts)
+        if strips < len(lengths):
+            raise ValueError(f"{strips} strips for {len(lengths)} parts of the span; give at least one each")
+        counts = np.ones(len(lengths), dtype=np.int64)
+        for _ in range(strips - len(lengths)):
+            counts[np.argmax(lengths / counts)] += 1
+        pieces = [
+            np.linspace(a, b, n, endpoint=False) for (a, b), n in zip(pairwise(parts), counts, strict=True)
+        ]
+        return np.concatenate([*pieces, parts[-1:]])
+
+    def span_fraction(self, stations: Array) -> Array:
+        """Fraction of the semi-span at lengths `stations` (k,)."""
+        return np.interp(stations, self._ends, self._spans)
+
+    def at(self, stations: Array) -> tuple[Array, Array, Array]:
+        """Leading edge (k, 3) [m], chord (k,) [m] and angle (k,) [rad] at lengths `stations` (k,)."""
+        leading = np.stack([np.interp(stations, self._ends, column) for column in self._corners.T], axis=1)
+        sections = self._surface.sections
+        chord = np.interp(stations, self._ends, [sections[0].chord_m[0], *(s.chord_m[1] for s in sections)])
+        # a twist may jump where a chord may not
+        place = np.clip(np.searchsorted(self._ends, stations, side="right") - 1, 0, len(sections) - 1)
+        along = (stations - self._ends[place]) / self._lengths[place]
+        first = np.array([section.twist_deg[0] for section in sections])[place]
+        last = np.array([section.twist_deg[1] for section in sections])[place]
+        angle = self._surface.incidence_deg + first + along * (last - first)
+        return leading, chord, np.radians(angle)
+
+
+def _chordwise_edges(count: int, hinge: float) -> Array:
+    if not 0.0 < hinge < 1.0:
+        return np.linspace(0.0, 1.0, count + 1)
+    if count < 2:
+        raise ValueError("a hinge needs two panels along the chord, one on either side")
+    behind = min(max(round(count * (1.0 - hinge)), 1), count - 1)
+    ahead = np.linspace(0.0, hinge, count - behind, endpoint=False)
+    return np.concatenate([ahead, np.linspace(hinge, 1.0, behind + 1)])
