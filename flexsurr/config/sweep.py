@@ -2,14 +2,21 @@
 
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import (
+    Field,
+    SerializerFunctionWrapHandler,
+    field_validator,
+    model_serializer,
+    model_validator,
+)
 
 from flexsurr.config.schema import Record
 from flexsurr.config.structure import Positive
 from flexsurr.config.study import Count
 
 Activation = Literal["elu", "tanh", "softplus", "silu", "squareplus", "half_log", "atan"]
-Architecture = Literal["mlp", "hnn", "polynomial"]
+Architecture = Literal["mlp", "hnn", "dissipative_hnn", "port_hamiltonian", "polynomial"]
+ScalingKind = Literal["canonical", "per_feature"]
 Optimiser = Literal["adam", "adam_cosine", "lbfgs", "levenberg_marquardt", "least_squares"]
 
 
@@ -28,26 +35,50 @@ class Trial(Record):
     patience: Count | None = None
     time_limit_s: Positive | None = None
     seed: Annotated[int, Field(ge=0)] = 0
+    scaling: ScalingKind = "canonical"
 
     @model_validator(mode="after")
     def _fits_the_architecture(self) -> Self:
-        if self.architecture == "polynomial":
-            if self.degree is None or self.hidden or self.activation is not None:
-                raise ValueError("polynomial takes degree, and neither hidden nor activation")
-            if self.optimiser != "least_squares":
-                raise ValueError("polynomial takes the optimiser least_squares")
+        if self.architecture == "polynomial" or (
+            self.architecture == "port_hamiltonian" and not self.hidden and self.activation is None
+        ):
+            self._check_polynomial()
         else:
-            if not self.hidden or self.activation is None or self.degree is not None:
-                raise ValueError(f"{self.architecture} takes hidden and activation, and no degree")
-            if self.optimiser == "least_squares":
-                raise ValueError(
-                    f"{self.architecture} is not linear in its weights: least_squares cannot fit it"
-                )
+            self._check_network()
+        if self.scaling == "per_feature" and self.architecture in ("polynomial", "port_hamiltonian"):
+            raise ValueError(f"{self.architecture} takes no scaling but canonical")
         if self.optimiser in ("adam", "adam_cosine") and (
             self.learning_rate is None or self.batch_size is None
         ):
             raise ValueError(f"{self.optimiser} takes learning_rate and batch_size")
         return self
+
+    def _check_polynomial(self) -> None:
+        if self.degree is None or self.hidden or self.activation is not None:
+            if self.architecture == "port_hamiltonian":
+                raise ValueError("port_hamiltonian takes degree, or hidden and activation")
+            raise ValueError("polynomial takes degree, and neither hidden nor activation")
+        if self.optimiser != "least_squares":
+            raise ValueError(f"{self.architecture} with a degree takes the optimiser least_squares")
+
+    def _check_network(self) -> None:
+        if not self.hidden or self.activation is None or self.degree is not None:
+            raise ValueError(f"{self.architecture} takes hidden and activation, and no degree")
+        if self.optimiser == "least_squares":
+            raise ValueError(f"{self.architecture} is not linear in its weights: least_squares cannot fit it")
+        if self.architecture == "port_hamiltonian":
+            if len(self.hidden) != 1:
+                raise ValueError(f"port_hamiltonian takes one hidden layer, not {len(self.hidden)}")
+            if self.optimiser != "levenberg_marquardt":
+                raise ValueError("port_hamiltonian with hidden takes the optimiser levenberg_marquardt")
+
+    @model_serializer(mode="wrap")
+    def _without_the_usual_scaling(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Leave `scaling` out where it is canonical: trials of before it existed keep their run_id."""
+        values: dict[str, Any] = handler(self)
+        if self.scaling == "canonical":
+            values.pop("scaling", None)
+        return values
 
 
 class Space(Record):
@@ -65,6 +96,7 @@ class Space(Record):
     patience: Annotated[tuple[Count, ...], Field(min_length=1)] | None = None
     time_limit_s: Annotated[tuple[Positive, ...], Field(min_length=1)] | None = None
     seed: Annotated[tuple[Annotated[int, Field(ge=0)], ...], Field(min_length=1)] | None = None
+    scaling: Annotated[tuple[ScalingKind, ...], Field(min_length=1)] | None = None
 
     @field_validator("*", mode="before")
     @classmethod

@@ -2,12 +2,21 @@
 
 from flexsurr.surrogates.activations import ACTIVATIONS
 from flexsurr.surrogates.compiled import CompiledSurrogate, compiled
+from flexsurr.surrogates.dissipative_hnn import DissipativeHNN
 from flexsurr.surrogates.hnn import HNN
 from flexsurr.surrogates.mlp import MLP
 from flexsurr.surrogates.network import Network
 from flexsurr.surrogates.polynomial import PolynomialHamiltonian
 from flexsurr.surrogates.saved import SurrogateFileError, load, load_model, save
-from flexsurr.surrogates.scaling import Scaling, canonical_scaling
+from flexsurr.surrogates.scaling import (
+    FeatureScaling,
+    PairScaling,
+    Scaling,
+    StateScaling,
+    canonical_scaling,
+    feature_scaling,
+    pair_scaling,
+)
 from flexsurr.surrogates.surrogate import Hamiltonian, Surrogate
 
 __all__ = [
@@ -15,15 +24,21 @@ __all__ = [
     "HNN",
     "MLP",
     "CompiledSurrogate",
+    "DissipativeHNN",
+    "FeatureScaling",
     "Hamiltonian",
     "Network",
+    "PairScaling",
     "PolynomialHamiltonian",
     "Scaling",
+    "StateScaling",
     "Surrogate",
     "SurrogateFileError",
     "canonical_scaling",
     "compiled",
+    "feature_scaling",
     "load",
     "load_model",
+    "pair_scaling",
     "save",
 ]

@@ -8,52 +8,29 @@ import numpy as np
 from flexsurr.simulation.rhs import Array, implements_rhs
 from flexsurr.surrogates.activations import slope, value
 from flexsurr.surrogates.layers import back, forward, offset
-from flexsurr.surrogates.network import Network
+from flexsurr.surrogates.scalar_heads import ScalarHeads
+from flexsurr.surrogates.scaled_kernel import scaled_kernel
+from flexsurr.surrogates.scaling import FeatureScaling
 from flexsurr.surrogates.surrogate import symplectic
 
 
 @dataclass(frozen=True, eq=False)
-class HNN(Network):
+class HNN(ScalarHeads):
     """q̇ = ∂H/∂p, ṗ = −∂H/∂q with H = Σ c σ(… σ(W₁ x + b₁) …), eq. 11.
 
-    The readout is the vector c; a constant would not move the field. For one hidden layer the field
-    needs σ′ only.
+    The scaled field is Hamiltonian; that in the units of the states is so if the scaling is canonical.
     """
 
     architecture: ClassVar[str] = "hnn"
-
-    @classmethod
-    def readout_shapes(cls, states: int, neurons: int) -> list[tuple[int, ...]]:
-        """The vector c."""
-        return [(neurons,)]
-
-    def _hidden_layers(self, x: Array) -> tuple[Array, list[Array]]:
-        """Arguments of the last layer's σ, and the slopes σ′ of the layers before it."""
-        *layers, _ = self.arrays()
-        slopes: list[Array] = []
-        z = x @ layers[0] + layers[1]
-        for weights, biases in zip(layers[2::2], layers[3::2], strict=True):
-            slopes.append(self.sigma.slope(z))
-            z = self.sigma.value(z) @ weights + biases
-        return z, slopes
+    heads: ClassVar[int] = 1
 
     def scaled_energy(self, x: Array) -> Array:
         """Ĥ of scaled states, (..., 2r) -> (...)."""
-        z, _ = self._hidden_layers(x)
-        return self.sigma.value(z) @ self.arrays()[-1]
-
-    def scaled_gradient(self, x: Array) -> Array:
-        """∇Ĥ of scaled states, (..., 2r) -> (..., 2r), by one sweep back through the layers."""
-        *layers, readout = self.arrays()
-        z, slopes = self._hidden_layers(x)
-        gradient = (self.sigma.slope(z) * readout) @ layers[-2].T
-        for weights, slopes_before in zip(layers[-4::-2], reversed(slopes), strict=True):
-            gradient = (gradient * slopes_before) @ weights.T
-        return gradient
+        return self.scaled_scalar(x, 0)
 
     def scaled_field(self, x: Array) -> Array:
         """Hamilton's equations of Ĥ."""
-        return symplectic(self.scaled_gradient(x))
+        return symplectic(*self.scaled_gradients(x))
 
     def energy(self, x: Array) -> Array:
         """H(x) − H(0), (..., 2r) -> (...), in the product of the units of q and p per second."""
@@ -61,8 +38,16 @@ class HNN(Network):
         difference = self.scaled_energy(x / states) - self.scaled_energy(np.zeros_like(states))
         return self.scaling.energy * difference
 
+    def scaled_kernel(self, parameters: Array) -> "HNNKernel":
+        """The scaled field with these weights, for compiled code."""
+        return HNNKernel(self.sigma.tag, self.widths, parameters)
+
     def kernel(self) -> tuple[NamedTuple, int]:
         """A single loop for one hidden layer over one pair (q, p), else layer by layer."""
+        work_size = self.widths[0] + 2 * sum(self.hidden)
+        if isinstance(self.scaling, FeatureScaling):
+            unscaled = self.scaled_kernel(self.parameters.copy())
+            return scaled_kernel(unscaled, work_size, self.scaling, self.widths[0])
         states = self.scaling.states(len(self.state_names))
         inner, *others, readout = self.arrays()
         inner = inner / states[:, None]
@@ -72,7 +57,7 @@ class HNN(Network):
                 self.sigma.tag, inner[0].copy(), inner[1].copy(), others[0].copy(), readout
             ), 0
         parameters = np.concatenate([array.ravel() for array in (inner, *others, readout)])
-        return HNNKernel(self.sigma.tag, self.widths, parameters), self.widths[0] + 2 * sum(self.hidden)
+        return self.scaled_kernel(parameters), work_size
 
 
 class PhasePlaneHNN(NamedTuple):

@@ -29,6 +29,10 @@ class MLP(Network):
             x = self.sigma.value(x @ weights + biases)
         return x @ weights_out + biases_out
 
+    def scaled_kernel(self, parameters: Array) -> "MLPKernel":
+        """The scaled field with these weights, for compiled code."""
+        return MLPKernel(self.sigma.tag, self.widths, parameters)
+
     def kernel(self) -> tuple[NamedTuple, int]:
         """A single loop for one hidden layer over one pair (q, p), else layer by layer."""
         count = len(self.state_names)
@@ -40,7 +44,7 @@ class MLP(Network):
             vectors = inner[0], inner[1], others[0], weights_out[:, 0], weights_out[:, 1], biases_out
             return PhasePlaneMLP(self.sigma.tag, *(vector.copy() for vector in vectors)), 0
         parameters = np.concatenate([array.ravel() for array in (inner, *others, weights_out, biases_out)])
-        return MLPKernel(self.sigma.tag, self.widths, parameters), sum(self.widths) + count
+        return self.scaled_kernel(parameters), sum(self.widths) + count
 
 
 class PhasePlaneMLP(NamedTuple):

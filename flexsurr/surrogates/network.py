@@ -3,7 +3,7 @@
 import math
 from abc import abstractmethod
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -48,6 +48,10 @@ class Network(Surrogate):
     @abstractmethod
     def readout_shapes(cls, states: int, neurons: int) -> list[tuple[int, ...]]:
         """Shapes of the arrays that read a last hidden layer of `neurons` out."""
+
+    @abstractmethod
+    def scaled_kernel(self, parameters: Array) -> NamedTuple:
+        """The scaled field with these weights in place of its own, for compiled code; the array is shared."""
 
     @property
     def parameter_count(self) -> int:

@@ -74,9 +74,10 @@ class PolynomialHamiltonian(Surrogate):
     def _oscillator(self) -> "OscillatorPolynomial":
         step = 1 if np.any(self.exponents[:, 0] % 2) else 2
         table = np.zeros((3, int(self.exponents[:, 0].max(initial=0)) // step + 1))
+        of_q, of_p = self.scaling.states(2)
         for (i, j), coefficient in zip(self.exponents.tolist(), self.parameters.tolist(), strict=True):
             k = i // step
-            c = coefficient * self.scaling.energy / self.scaling.q**i / self.scaling.p**j
+            c = coefficient * self.scaling.energy / of_q**i / of_p**j
             if j == 2:
                 table[0, k] += 2.0 * c
             if k > 0:

@@ -11,14 +11,15 @@ import numpy as np
 from flexsurr.simulation.rhs import Model
 from flexsurr.storage import replacing
 from flexsurr.surrogates.compiled import compiled
+from flexsurr.surrogates.dissipative_hnn import DissipativeHNN
 from flexsurr.surrogates.hnn import HNN
 from flexsurr.surrogates.mlp import MLP
 from flexsurr.surrogates.polynomial import PolynomialHamiltonian
-from flexsurr.surrogates.scaling import Scaling
+from flexsurr.surrogates.scaling import FeatureScaling, PairScaling, Scaling, StateScaling
 from flexsurr.surrogates.surrogate import Surrogate
 
 FORMAT = "flexsurr surrogate 1"
-NETWORKS = {"mlp": MLP, "hnn": HNN}
+NETWORKS = {network.architecture: network for network in (MLP, HNN, DissipativeHNN)}
 
 
 class SurrogateFileError(Exception):
@@ -67,7 +68,7 @@ def _surrogate(header: dict[str, Any], arrays: dict[str, np.ndarray]) -> Surroga
         raise ValueError("parameters that are not finite")
     common: dict[str, Any] = {
         "parameters": parameters,
-        "scaling": Scaling(**header["scaling"]),
+        "scaling": _scaling(header["scaling"]),
         "state_names": tuple(header["state_names"]),
         "state_units": tuple(header["state_units"]),
     }
@@ -75,6 +76,14 @@ def _surrogate(header: dict[str, Any], arrays: dict[str, np.ndarray]) -> Surroga
         return PolynomialHamiltonian(**common, exponents=arrays["exponents"].astype(np.int64, casting="safe"))
     network = NETWORKS[header["architecture"]]
     return network(**common, hidden=tuple(header["hidden"]), activation=header["activation"])
+
+
+def _scaling(values: dict[str, Any]) -> StateScaling:
+    if "action" in values:
+        return PairScaling(q=tuple(values["q"]), action=values["action"], energy=values["energy"])
+    if "dx" in values:
+        return FeatureScaling(x=tuple(values["x"]), dx=tuple(values["dx"]))
+    return Scaling(**values)
 
 
 def load_model(path: str | Path, implementation: Literal["numpy", "compiled"]) -> Model:

@@ -1,11 +1,12 @@
-"""The canonical scaling: one scale for all q, one for all p, one for the energy.
+"""Scales of states and of their rates: canonical, by pair of states, or of each state by itself.
 
-Scaling each state by itself would not preserve Hamilton's equations. With q = s_q q̂, p = s_p p̂ and
-H = s_H Ĥ they keep their form in the time t̂ = t / s_t,
+A canonical scaling preserves Hamilton's equations. With q = s_q q̂, p = s_p p̂ and H = s_H Ĥ they keep
+their form in the time t̂ = t / s_t,
 
     dq̂/dt̂ = ∂Ĥ/∂p̂,   dp̂/dt̂ = −∂Ĥ/∂q̂,   s_t = s_q s_p / s_H,
 
-so that the rates follow: q̇ = (s_H / s_p) dq̂/dt̂ and ṗ = (s_H / s_q) dp̂/dt̂.
+so that the rates follow: q̇ = (s_H / s_p) dq̂/dt̂ and ṗ = (s_H / s_q) dp̂/dt̂. Scales may differ from pair to
+pair if the product s_q s_p does not. Scaling each state and each rate by itself breaks the form.
 """
 
 from dataclasses import dataclass
@@ -17,16 +18,16 @@ from flexsurr.simulation.rhs import Array
 
 @dataclass(frozen=True)
 class Scaling:
-    """Scales of q, of p and of the energy, in the units of the states and their product per second."""
+    """The canonical scaling: one scale for all q, one for all p, one for the energy."""
 
     q: float
     p: float
     energy: float
 
     def __post_init__(self) -> None:
-        for name, value in (("q", self.q), ("p", self.p), ("energy", self.energy)):
-            if not (np.isfinite(value) and value > 0.0):
-                raise ValueError(f"the scale of {name} must be finite and positive, not {value}")
+        _check_positive("q", self.q)
+        _check_positive("p", self.p)
+        _check_positive("energy", self.energy)
 
     @property
     def time_s(self) -> float:
@@ -42,6 +43,65 @@ class Scaling:
         return np.repeat([self.energy / self.p, self.energy / self.q], count // 2)
 
 
+@dataclass(frozen=True)
+class PairScaling:
+    """Canonical, with scales of their own for each pair: s_q,k `q` (r,), and s_q,k s_p,k = `action` for all.
+
+    Two models whose modes differ only in their lengths become the same in it.
+    """
+
+    q: tuple[float, ...]
+    action: float
+    energy: float
+
+    def __post_init__(self) -> None:
+        for k, value in enumerate(self.q):
+            _check_positive(f"q_{k + 1}", value)
+        _check_positive("action", self.action)
+        _check_positive("energy", self.energy)
+
+    def states(self, count: int) -> Array:
+        """Scale of each of the `count` = 2r states (q, p), shape (2r,)."""
+        q = _of_length(self.q, count // 2)
+        return np.concatenate([q, self.action / q])
+
+    def rates(self, count: int) -> Array:
+        """Scale of each state's time derivative, shape (2r,): that of the state over `action` / `energy`."""
+        return self.states(count) * (self.energy / self.action)
+
+
+@dataclass(frozen=True)
+class FeatureScaling:
+    """Each state and each rate by itself, `x` and `dx` (2r,): what a learning library does by default.
+
+    The scaled equations of a Hamiltonian system are not Hamiltonian.
+    """
+
+    x: tuple[float, ...]
+    dx: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        for name, values in (("x", self.x), ("dx", self.dx)):
+            for k, value in enumerate(values):
+                _check_positive(f"{name}_{k + 1}", value)
+
+    @property
+    def energy(self) -> float:
+        """Geometric mean of what would be one number, s_q,k s_ṗ,k and s_p,k s_q̇,k, if it were canonical."""
+        return float(np.exp(np.mean(np.log([*self.x, *self.dx])) * 2.0))
+
+    def states(self, count: int) -> Array:
+        """Scale of each of the `count` = 2r states (q, p), shape (2r,)."""
+        return _of_length(self.x, count)
+
+    def rates(self, count: int) -> Array:
+        """Scale of each state's time derivative, shape (2r,)."""
+        return _of_length(self.dx, count)
+
+
+StateScaling = Scaling | PairScaling | FeatureScaling
+
+
 def canonical_scaling(x: Array, dx: Array) -> Scaling:
     """Scaling of states `x` (m, 2r) and their derivatives `dx` (m, 2r).
 
@@ -52,3 +112,36 @@ def canonical_scaling(x: Array, dx: Array) -> Scaling:
     q, p = float(np.max(np.abs(x[:, :r]))), float(np.max(np.abs(x[:, r:])))
     rates = float(np.sqrt(np.mean(dx[:, :r] ** 2))), float(np.sqrt(np.mean(dx[:, r:] ** 2)))
     return Scaling(q=q, p=p, energy=float(np.sqrt(p * rates[0] * q * rates[1])))
+
+
+def pair_scaling(x: Array, dx: Array) -> PairScaling:
+    """Pair scaling of states `x` (m, 2r) and their derivatives `dx` (m, 2r).
+
+    The largest |q_k| of each pair and the largest |p_k| of any become one; the unit of time is that of the
+    rates q̇_k, the root mean square of all. Raises ValueError where a coordinate or all rates are zero.
+    """
+    r = x.shape[1] // 2
+    q = np.max(np.abs(x[:, :r]), axis=0)
+    action = float(np.max(q * np.max(np.abs(x[:, r:]), axis=0)))
+    _check_positive("q", float(np.min(q)))
+    frequency = float(np.sqrt(np.mean((dx[:, :r] / q) ** 2)))
+    return PairScaling(q=tuple(q.tolist()), action=action, energy=action * frequency)
+
+
+def feature_scaling(x: Array, dx: Array) -> FeatureScaling:
+    """Standard deviation of each state of `x` and each rate of `dx` (m, 2r); ValueError where one is zero."""
+    return FeatureScaling(
+        x=tuple(np.std(x, axis=0).tolist()),
+        dx=tuple(np.std(dx, axis=0).tolist()),
+    )
+
+
+def _check_positive(name: str, value: float) -> None:
+    if not (np.isfinite(value) and value > 0.0):
+        raise ValueError(f"the scale of {name} must be finite and positive, not {value}")
+
+
+def _of_length(values: tuple[float, ...], count: int) -> Array:
+    if len(values) != count:
+        raise ValueError(f"{len(values)} scales do not fit {count} states or coordinates")
+    return np.array(values)

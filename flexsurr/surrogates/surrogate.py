@@ -7,7 +7,7 @@ from typing import Any, ClassVar, NamedTuple, Protocol, runtime_checkable
 import numpy as np
 
 from flexsurr.simulation.rhs import Array
-from flexsurr.surrogates.scaling import Scaling
+from flexsurr.surrogates.scaling import StateScaling
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,7 +19,7 @@ class Surrogate(ABC):
     """
 
     parameters: Array
-    scaling: Scaling
+    scaling: StateScaling
     state_names: tuple[str, ...]
     state_units: tuple[str, ...]
 

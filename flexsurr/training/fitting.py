@@ -11,7 +11,17 @@ import numpy as np
 import pandas as pd
 
 from flexsurr.config.sweep import Trial
-from flexsurr.surrogates import HNN, MLP, Network, Surrogate, canonical_scaling
+from flexsurr.simulation.rhs import Array
+from flexsurr.surrogates import (
+    HNN,
+    MLP,
+    DissipativeHNN,
+    Network,
+    StateScaling,
+    Surrogate,
+    canonical_scaling,
+    feature_scaling,
+)
 from flexsurr.training.adam import Adam
 from flexsurr.training.checkpoint import read_checkpoint, remove_checkpoint, write_checkpoint
 from flexsurr.training.dataset import Dataset
@@ -24,7 +34,11 @@ from flexsurr.training.optimiser import Optimiser
 from flexsurr.training.progress import Progress
 
 CHECKPOINT_EVERY_S = 5.0
-NETWORKS: dict[str, type[Network]] = {"hnn": HNN, "mlp": MLP}
+NETWORKS: dict[str, type[Network]] = {form.architecture: form for form in (HNN, MLP, DissipativeHNN)}
+SCALINGS: dict[str, Callable[[Array, Array], StateScaling]] = {
+    "canonical": canonical_scaling,
+    "per_feature": feature_scaling,
+}
 FIRST_ORDER = ("adam", "adam_cosine")
 
 Report = Callable[[int, float, float, float], None]
@@ -118,7 +132,7 @@ def _untrained(trial: Trial, dataset: Dataset) -> Network:
     spread: Literal["torch", "wide"] = "torch" if trial.optimiser in FIRST_ORDER else "wide"
     return form(
         parameters=initial_parameters(form, len(dataset.state_names), trial.hidden, spread, trial.seed),
-        scaling=canonical_scaling(dataset.x_train, dataset.dx_train),
+        scaling=SCALINGS[trial.scaling](dataset.x_train, dataset.dx_train),
         state_names=dataset.state_names,
         state_units=dataset.state_units,
         hidden=trial.hidden,

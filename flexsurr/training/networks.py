@@ -10,7 +10,8 @@ import torch
 from torch import Tensor, nn
 
 from flexsurr.simulation.rhs import Array
-from flexsurr.surrogates import HNN, Network
+from flexsurr.surrogates import Network
+from flexsurr.surrogates.scalar_heads import ScalarHeads
 
 ACTIVATIONS: dict[str, Callable[[Tensor], Tensor]] = {
     "elu": nn.functional.elu,
@@ -25,21 +26,22 @@ ACTIVATIONS: dict[str, Callable[[Tensor], Tensor]] = {
 
 
 class TorchNetwork(nn.Module):
-    """An MLP, or an HNN with its field by differentiation of H; scaled states in, scaled field out."""
+    """A network of scaled states: its outputs, or the field made of the gradients of `scalars` of them.
 
-    def __init__(
-        self, widths: tuple[int, ...], activation: str, hamiltonian: bool, dtype: torch.dtype
-    ) -> None:
+    No scalars: an MLP. One: H, an HNN. Two: H and the dissipation function, a D-HNN.
+    """
+
+    def __init__(self, widths: tuple[int, ...], activation: str, scalars: int, dtype: torch.dtype) -> None:
         super().__init__()
         pairs = itertools.pairwise(widths)
         self.hidden = nn.ModuleList(nn.Linear(n, m, dtype=dtype) for n, m in pairs)
-        outputs = 1 if hamiltonian else widths[0]
-        self.readout = nn.Linear(widths[-1], outputs, bias=not hamiltonian, dtype=dtype)
+        outputs = scalars or widths[0]
+        self.readout = nn.Linear(widths[-1], outputs, bias=not scalars, dtype=dtype)
         self.sigma = ACTIVATIONS[activation]
-        self.hamiltonian = hamiltonian
+        self.scalars = scalars
 
     def output(self, x: Tensor) -> Tensor:
-        """H (..., 1) or the field (..., 2r)."""
+        """The scalars (..., 1 or 2) or the field (..., 2r)."""
         for layer in self.hidden:
             x = self.sigma(layer(x))
         output: Tensor = self.readout(x)
@@ -47,29 +49,44 @@ class TorchNetwork(nn.Module):
 
     def forward(self, x: Tensor) -> Tensor:
         """The scaled field, (..., 2r) -> (..., 2r)."""
-        if not self.hamiltonian:
+        if not self.scalars:
             return self.output(x)
         with torch.enable_grad():
             x = x if x.requires_grad else x.detach().requires_grad_()
-            (gradient,) = torch.autograd.grad(self.output(x).sum(), x, create_graph=self.training)
-        by_q, by_p = gradient.chunk(2, dim=-1)
-        return torch.cat([by_p, -by_q], dim=-1)
+            hamiltonian, *dissipation = self.output(x).unbind(dim=-1)
+            by_q, by_p = self._gradient(hamiltonian, x).chunk(2, dim=-1)
+            field = torch.cat([by_p, -by_q], dim=-1)
+            return field + self._gradient(dissipation[0], x) if dissipation else field
+
+    def _gradient(self, scalar: Tensor, x: Tensor) -> Tensor:
+        (gradient,) = torch.autograd.grad(scalar.sum(), x, create_graph=self.training, retain_graph=True)
+        return gradient
 
 
 def to_torch(network: Network, dtype: torch.dtype = torch.float64) -> TorchNetwork:
     """The torch module with the weights of `network`."""
-    module = TorchNetwork(network.widths, network.activation, isinstance(network, HNN), dtype)
+    scalars = network.heads if isinstance(network, ScalarHeads) else 0
+    module = TorchNetwork(network.widths, network.activation, scalars, dtype)
     with torch.no_grad():
-        for parameter, array in zip(module.parameters(), network.arrays(), strict=True):
-            transposed = array.T if array.ndim == 2 else array
-            parameter.copy_(torch.from_numpy(transposed.copy()).reshape(parameter.shape))
+        for parameter, array in zip(module.parameters(), _as_torch(network, network.arrays()), strict=True):
+            parameter.copy_(torch.from_numpy(array.copy()))
     return module
+
+
+def _as_torch(network: Network, arrays: list[Array]) -> list[Array]:
+    """The network's arrays as torch has them: weights (to, from), the readouts of all scalars in one."""
+    scalars = network.heads if isinstance(network, ScalarHeads) else 0
+    hidden, readouts = arrays[: len(arrays) - scalars], arrays[len(arrays) - scalars :]
+    return [array.T for array in hidden] + ([np.array(readouts)] if scalars else [])
 
 
 def from_torch(module: TorchNetwork, network: Network) -> Network:
     """`network` with the weights of the torch `module` of its shape in place of its own."""
-    arrays = [parameter.detach().double().numpy().T for parameter in module.parameters()]
-    return replace(network, parameters=np.concatenate([np.ascontiguousarray(a).ravel() for a in arrays]))
+    arrays = [parameter.detach().double().numpy() for parameter in module.parameters()]
+    if module.scalars:
+        *arrays, readouts = arrays
+        arrays += list(readouts)
+    return replace(network, parameters=np.concatenate([np.ascontiguousarray(a.T).ravel() for a in arrays]))
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,11 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexsurr.simulation.rhs import Array
-from flexsurr.surrogates import HNN, Network
-from flexsurr.surrogates.hnn import HNNKernel
-from flexsurr.surrogates.mlp import MLPKernel
-from flexsurr.training.backpropagation import workspace
+from flexsurr.surrogates import Network
 from flexsurr.training.batches import fields, loss_and_gradient, residuals_and_jacobian
+from flexsurr.training.forward_pass import workspace
 from flexsurr.training.losses import output_weights
 
 CHUNK = 1 << 20  # elements of the Jacobian that exist at a time: 8 MB
@@ -55,10 +53,9 @@ class Objective:
         """Scratch for one sample, in the precision of the samples."""
         return workspace(self.network.widths).astype(self.x.dtype)
 
-    def kernel(self, parameters: Array) -> HNNKernel | MLPKernel:
+    def kernel(self, parameters: Array) -> NamedTuple:
         """The network with these weights, for compiled code; the array is shared, not copied."""
-        form = HNNKernel if isinstance(self.network, HNN) else MLPKernel
-        return form(self.network.sigma.tag, self.network.widths, parameters)
+        return self.network.scaled_kernel(parameters)
 
     def loss(self, parameters: Array) -> float:
         """The nmse over all samples; not finite where a weight or the field is not."""

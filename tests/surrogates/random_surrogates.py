@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from flexsurr.surrogates import HNN, MLP, Network, PolynomialHamiltonian, Scaling
+from flexsurr.surrogates import HNN, MLP, DissipativeHNN, Network, PolynomialHamiltonian, Scaling
 from flexsurr.surrogates.monomials import Exponents, monomials_to_degree
 
 SCALING = Scaling(q=0.6, p=6.0, energy=40.0)
@@ -43,4 +43,4 @@ HAMILTONIANS = {
     "mechanical": polynomial(2, 7, "mechanical"),
     "even": polynomial(2, 8, "even"),
 }
-NETWORKS = {"hnn": HNN, "mlp": MLP}
+NETWORKS = {"hnn": HNN, "mlp": MLP, "dissipative_hnn": DissipativeHNN}

@@ -3,13 +3,13 @@
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from flexsurr.surrogates import HNN, MLP, Network, canonical_scaling
+from flexsurr.surrogates import HNN, MLP, DissipativeHNN, Network, canonical_scaling
 from flexsurr.training import Dataset, split_dataset
 from flexsurr.training.initialisation import initial_parameters
 
 STIFFNESS = 555.0
 NAMES, UNITS = ("eta_1", "p_1"), ("1", "kg m2/s")
-FORMS: dict[str, type[Network]] = {"hnn": HNN, "mlp": MLP}
+FORMS: dict[str, type[Network]] = {"hnn": HNN, "mlp": MLP, "dissipative_hnn": DissipativeHNN}
 
 
 def field(x):

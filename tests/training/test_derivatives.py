@@ -11,7 +11,7 @@ from flexsurr.training import nmse
 from flexsurr.training.networks import to_torch
 from flexsurr.training.objective import Objective
 
-SHAPES = [("hnn", (5,)), ("mlp", (5,)), ("hnn", (4, 3)), ("mlp", (4, 3, 2))]
+SHAPES = [("hnn", (5,)), ("mlp", (5,)), ("hnn", (4, 3)), ("mlp", (4, 3, 2)), ("dissipative_hnn", (4, 3))]
 DATASETS = {"one pair": free_responses(4, 20), "three pairs": three_pairs()}
 
 
@@ -19,11 +19,15 @@ def automatic_jacobian(surrogate, x):
     """∂f/∂θ (m, 2r, n) of the scaled field in the layout of `Network.parameters`."""
     module = to_torch(surrogate).train()
     field = module(torch.from_numpy(x))
+    readouts = module.readout.weight if module.scalars else None  # one scalar after the other
+    transposed = [block.ndim == 2 and block is not readouts for block in module.parameters()]
     rows = [
         torch.cat(
             [
-                (block.T if block.ndim == 2 else block).reshape(-1)
-                for block in torch.autograd.grad(f, module.parameters(), retain_graph=True)
+                (block.T if turn else block).reshape(-1)
+                for block, turn in zip(
+                    torch.autograd.grad(f, module.parameters(), retain_graph=True), transposed, strict=True
+                )
             ]
         )
         for f in field.reshape(-1)

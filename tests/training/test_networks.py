@@ -21,7 +21,7 @@ def test_every_activation_is_there():
     assert set(TORCH_ACTIVATIONS) == set(ACTIVATIONS)
 
 
-@pytest.mark.parametrize("architecture", ["hnn", "mlp"])
+@pytest.mark.parametrize("architecture", ["hnn", "mlp", "dissipative_hnn"])
 @pytest.mark.parametrize("activation", TORCH_ACTIVATIONS)
 def test_same_field(architecture, activation):
     for dataset, hidden in ((DATASET, (9,)), (three_pairs(), (6, 4))):
@@ -33,7 +33,7 @@ def test_same_field(architecture, activation):
         assert np.all(np.abs(found - expected) <= 1e-12 * np.max(np.abs(expected), axis=0))
 
 
-@pytest.mark.parametrize("architecture", ["hnn", "mlp"])
+@pytest.mark.parametrize("architecture", ["hnn", "mlp", "dissipative_hnn"])
 def test_weights_there_and_back(architecture):
     surrogate = network(DATASET, architecture, (7, 5), "silu", seed=1)
     other = network(DATASET, architecture, (7, 5), "silu", seed=2)

@@ -68,3 +68,29 @@ def test_run_ids_do_not_change_unnoticed():
     """A change of these names reruns every run there is: intended, or a mistake."""
     trial = Trial(architecture="polynomial", degree=6, optimiser="least_squares")
     assert run_id(trial, "cantilever", "hamiltonian") == "polynomial-0a5e215ee1"
+
+
+def test_a_scaling_is_part_of_the_name_unless_it_is_the_usual_one():
+    space = NETWORKS.model_copy(update={"scaling": ("canonical", "per_feature"), "seed": (0,)})
+    trials = expand(Sweep(spaces=(space,)))
+    ids = [run_id(trial, "s", "v") for trial in trials]
+    assert len(set(ids)) == len(trials) == 12
+    usual = expand(Sweep(spaces=(NETWORKS.model_copy(update={"seed": (0,)}),)))
+    assert {run_id(trial, "s", "v") for trial in usual} < set(ids)
+    assert all(Trial.model_validate(trial.model_dump(mode="json")) == trial for trial in trials)
+
+
+@pytest.mark.parametrize(
+    ("changes", "reason"),
+    [
+        ({}, "degree, or hidden and activation"),
+        ({"degree": 4}, "takes the optimiser least_squares"),
+        ({"degree": 4, "optimiser": "least_squares", "scaling": "per_feature"}, "no scaling but canonical"),
+        ({"hidden": (8,), "activation": "silu", "optimiser": "lbfgs"}, "levenberg_marquardt"),
+        ({"hidden": (8, 8), "activation": "silu"}, "one hidden layer, not 2"),
+        ({"hidden": (8,), "activation": "silu", "degree": 4}, "no degree"),
+    ],
+)
+def test_a_port_hamiltonian_trial_is_one_of_two(changes, reason):
+    with pytest.raises(ValueError, match=reason):
+        Trial(architecture="port_hamiltonian", **changes)
