@@ -5,7 +5,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from flexsurr.config.schema import Record
-from flexsurr.config.structure import Positive
+from flexsurr.config.structure import NotNegative, Positive
 
 Fraction = Annotated[float, Field(gt=0.0, le=1.0)]
 
@@ -13,7 +13,8 @@ Fraction = Annotated[float, Field(gt=0.0, le=1.0)]
 class Engine(Record):
     """Each of two engines, a point mass that is a cylinder in its moments of inertia.
 
-    `y_m` is its place to the side; it sits ahead of the wing's elastic axis there and below it.
+    `y_m` is its place to the side; it sits ahead of the wing's elastic axis there and below it. The pylon
+    runs forward, below the elastic axis, to the two hangers that carry the nacelle.
     """
 
     mass_kg: Positive
@@ -22,6 +23,23 @@ class Engine(Record):
     below_elastic_axis_m: float
     length_m: Positive
     diameter_m: Positive
+    pylon_below_elastic_axis_m: Positive
+    hangers_ahead_of_elastic_axis_m: tuple[Positive, Positive]
+
+    @model_validator(mode="after")
+    def _hangs_between_its_hangers(self) -> Self:
+        forward, aft = self.hangers_ahead_of_elastic_axis_m
+        if not forward > self.ahead_of_elastic_axis_m > aft:
+            raise ValueError(
+                f"hangers_ahead_of_elastic_axis_m: [{forward}, {aft}] do not lie on both sides of the engine "
+                f"at {self.ahead_of_elastic_axis_m}"
+            )
+        if self.below_elastic_axis_m <= self.pylon_below_elastic_axis_m:
+            raise ValueError(
+                f"pylon_below_elastic_axis_m: {self.pylon_below_elastic_axis_m} is not above the engine at "
+                f"{self.below_elastic_axis_m}"
+            )
+        return self
 
 
 class PointMass(Record):
@@ -32,10 +50,11 @@ class PointMass(Record):
 
 
 class SpreadMass(Record):
-    """A mass spread evenly over a length of the fuselage."""
+    """A mass spread evenly over a length of the fuselage, with a radius of gyration in roll."""
 
     mass_kg: Positive
     x_m: tuple[float, float]
+    radius_of_gyration_m: NotNegative
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:
@@ -45,10 +64,14 @@ class SpreadMass(Record):
 
 
 class CentredMass(Record):
-    """A mass spread over the whole fuselage, linearly, so that its centroid lies at `centroid_x_m`."""
+    """A mass in the shell of the whole fuselage, as x^(a−1) (L−x)^(b−1).
+
+    `taper` is a, from 1 (does not thin out at the nose); b puts the centroid at `centroid_x_m`.
+    """
 
     mass_kg: Positive
     centroid_x_m: Positive
+    taper: Annotated[float, Field(ge=1.0)]
 
 
 class Masses(Record):
