@@ -40,7 +40,7 @@ def frozen_matrices(panels: Panels, grid: MachGrid) -> FrozenMatrices:
         at_control = influence(panels.ends, 1.0 / node, panels.control)
         inverses.append(np.linalg.inv(np.einsum("dij,id->ij", at_control, panels.normal)))
         velocities.append(influence(panels.ends, 1.0 / node, panels.bound))
-    return FrozenMatrices(np.stack(inverses), np.stack(velocities))
+    return FrozenMatrices(np.ascontiguousarray(np.stack(inverses)), np.stack(velocities))
 
 
 def frozen(
@@ -60,27 +60,30 @@ def _frozen(kernel, u, y, work):
     n = panels.normal.shape[0]
     count = grid.nodes.size
     # work: weights of the nodes, wash, circulations
-    wash, gamma = count, count + n
+    # unsigned: numba lets a signed index be negative, and a loop over such does not vectorise
+    columns = np.uint64(n)
+    wash, circulations = np.uint64(count), np.uint64(count + n)
     write_weights(grid, u[MACH], work)
     for k in range(y.size):
         y[k] = 0.0
     for i in range(n):
-        work[wash + i] = -normal_wash(exact, panels, u, i)
+        work[count + i] = -normal_wash(exact, panels, u, i)
     for node in range(count):
         weight = work[node]
         if weight == 0.0:
             continue
         for i in range(n):
             total = 0.0
-            for j in range(n):
+            for j in range(columns):
                 total += inverse[node, i, j] * work[wash + j]
-            work[gamma + i] = total
+            work[count + n + i] = total
         for i in range(n):
             vx, vy, vz = 0.0, 0.0, 0.0
-            for j in range(n):
-                circulation = work[gamma + j]
-                vx += induced[node, 0, i, j] * circulation
-                vy += induced[node, 1, i, j] * circulation
-                vz += induced[node, 2, i, j] * circulation
-            add_vortex_force(exact, panels, u, i, weight * work[gamma + i], vx, vy, vz, y)
+            for j in range(columns):
+                gamma = work[circulations + j]
+                vx += induced[node, 0, i, j] * gamma
+                vy += induced[node, 1, i, j] * gamma
+                vz += induced[node, 2, i, j] * gamma
+            gamma = weight * work[count + n + i]
+            add_vortex_force(exact, panels, u, i, gamma, vx, vy, vz, y)
     add_body(exact, panels, u, y)

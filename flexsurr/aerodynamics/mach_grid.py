@@ -16,7 +16,7 @@ from flexsurr.aerodynamics.horseshoe import stretch_of
 from flexsurr.simulation.rhs import Array
 
 DEFAULT_NODES = 9
-DEFAULT_POINTS = 4
+DEFAULT_POINTS = 3
 
 
 class MachGrid(NamedTuple):

@@ -60,7 +60,7 @@ def quadratic_forms(panels: Panels, grid: MachGrid) -> Array:
         symmetric = form + form.transpose(0, 2, 1)
         symmetric[:, range(TERMS), range(TERMS)] *= 0.5
         forms.append(symmetric[:, upper[0], upper[1]])
-    return np.stack(forms)
+    return np.ascontiguousarray(np.stack(forms))
 
 
 def _wash_of_terms(panels: Panels) -> Array:
@@ -116,6 +116,7 @@ def _quadratic(kernel, u, y, work):
         for b in range(a, TERMS):
             work[place] = work[terms + a] * work[terms + b]
             place += 1
+    first = np.uint64(products)  # unsigned, so that the loop over products vectorises
     for k in range(y.size):
         y[k] = 0.0
     for node in range(count):
@@ -124,7 +125,7 @@ def _quadratic(kernel, u, y, work):
             continue
         for k in range(y.size):
             total = 0.0
-            for m in range(forms.shape[2]):
-                total += forms[node, k, m] * work[products + m]
+            for m in range(np.uint64(forms.shape[2])):
+                total += forms[node, k, m] * work[first + m]
             y[k] += weight * total
     add_body(False, panels, u, y)
