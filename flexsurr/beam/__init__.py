@@ -5,9 +5,9 @@ from flexsurr.beam.dynamics import BeamModel
 from flexsurr.beam.elastica import elastica_tip
 from flexsurr.beam.equilibrium import EquilibriumNotFound, find_equilibrium
 from flexsurr.beam.initial_conditions import draw_initial_conditions
-from flexsurr.beam.kinematics import element_frames, mass_matrix, node_positions, tip_position
+from flexsurr.beam.kinematics import element_frames, mass_matrix, node_positions, tip_position, tip_twist
 from flexsurr.beam.loaded import LoadedModel, loaded
-from flexsurr.beam.loads import DeadTipForce, DistributedForce, Load, SineTipForce
+from flexsurr.beam.loads import DeadTipForce, DistributedForce, Load, SineDistributedLoad, SineTipForce
 from flexsurr.beam.models import Implementation, full_order, reduced_order
 from flexsurr.beam.modes import ModalBasis, natural_modes, reduce
 
@@ -21,6 +21,7 @@ __all__ = [
     "Load",
     "LoadedModel",
     "ModalBasis",
+    "SineDistributedLoad",
     "SineTipForce",
     "chain",
     "damping_matrix",
@@ -38,4 +39,5 @@ __all__ = [
     "rotary_inertia",
     "stiffness_matrix",
     "tip_position",
+    "tip_twist",
 ]

@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from flexsurr.beam.chain import chain, rotary_inertia
-from flexsurr.beam.kinematics import configuration, projected_mass, tip_position
+from flexsurr.beam.kinematics import configuration, projected_mass, tip_position, tip_twist
 from flexsurr.beam.projection import Projection
 from flexsurr.config.study import Variant
 from flexsurr.simulation.rhs import Array
@@ -78,3 +78,7 @@ class BeamModel(ABC):
     def tip(self, x: Array) -> Array:
         """(..., 3) position of the tip [m] at states x (..., 2r)."""
         return tip_position(self.projection.structure, self.projection.joints(x))
+
+    def twist(self, x: Array) -> Array:
+        """(...,) twist of the tip against the clamp [rad] at states x (..., 2r)."""
+        return tip_twist(self.projection.structure, self.projection.joints(x))

@@ -60,7 +60,7 @@ def tangent_stiffness(
 
 def _forces(structure: Structure, q: Array, load: Load | None) -> Array:
     beam = chain(structure)
-    on_centres, on_tip = static_forces(structure, load)
+    on_centres, on_tip, _ = static_forces(structure, load)  # no couple is constant
     weights = np.tile(beam.element_mass * beam.gravity, (beam.elements, 1))
     return generalised_forces(beam, configuration(beam, q), weights, on_centres, on_tip)
 
@@ -68,7 +68,7 @@ def _forces(structure: Structure, q: Array, load: Load | None) -> Array:
 def _size(structure: Structure, load: Load | None) -> float:
     """Gravity and `load` as a moment over the length [N m]."""
     beam = chain(structure)
-    on_centres, on_tip = static_forces(structure, load)
+    on_centres, on_tip, _ = static_forces(structure, load)
     weight = beam.elements * beam.element_mass * np.linalg.norm(beam.gravity)
     forces = weight + np.sum(np.linalg.norm(on_centres, axis=1)) + np.linalg.norm(on_tip)
     return float(forces) * structure.length_m

@@ -57,6 +57,16 @@ def tip_position(structure: Structure, q: Array) -> Array:
     return node_positions(structure, q)[..., -1, :]
 
 
+def tip_twist(structure: Structure, q: Array) -> Array:
+    """(...,) twist of the last element against the clamp [rad] at q (..., n): the angle φ of its 3-2-1 turn.
+
+    With R the turn from the clamp's axes to the element's, φ = atan2(R_zy, R_zz), between −π and π.
+    """
+    tip = configuration(chain(structure), _floating(check_coordinates(structure, q))).frames[..., -1, :, :]
+    up = tip.swapaxes(-1, -2) @ chain(structure).clamp[:, 2]
+    return np.asarray(np.arctan2(up[..., 1], up[..., 2]))
+
+
 def node_positions(structure: Structure, q: Array) -> Array:
     """(..., N + 1, 3) ends of the elements on the elastic axis [m], the clamp first, at q (..., n)."""
     return configuration(chain(structure), _floating(check_coordinates(structure, q))).nodes
@@ -100,15 +110,22 @@ def velocities(beam: Chain, at: Configuration, rates: Array) -> Velocities:
 
 
 def generalised_forces(
-    beam: Chain, at: Configuration, on_masses: Array, on_centres: Array, on_tip: Array
+    beam: Chain,
+    at: Configuration,
+    on_masses: Array,
+    on_centres: Array,
+    on_tip: Array,
+    couples: Array | None = None,
 ) -> Array:
     """(..., n) Q = Jᵀ F of forces on the masses (N, 3), on the elements' centres (N, 3), on the tip (3,) [N].
 
-    A rotation feels the moment about its joint of all forces from its element outwards, a stretch their
-    sum along the element.
+    `couples` (N,) [N m] twist the elements about their own x axes. A rotation feels the moment about its
+    joint of all that acts from its element outwards, a stretch the sum of the forces along the element.
     """
     forces = on_masses + on_centres
     moments = cross(at.masses, on_masses) + cross(at.centres, on_centres)
+    if couples is not None:
+        moments = moments + couples[:, None] * at.axes[..., 3, :, :]
     outboard_force = np.cumsum(forces[..., ::-1, :], axis=-2)[..., ::-1, :] + on_tip
     outboard_moment = np.cumsum(moments[..., ::-1, :], axis=-2)[..., ::-1, :]
     outboard_moment = outboard_moment + cross(at.nodes[..., -1:, :], on_tip)

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 from numba import njit
 
 from flexsurr.beam.planar_sweep import padded_length, planar_angles
-from flexsurr.beam.spatial_sweep import AXES, add_dead_forces, sweep_axes
+from flexsurr.beam.spatial_sweep import AXES, add_couples, add_dead_forces, sweep_axes
 from flexsurr.beam.trigonometry import sine_cosine
 from flexsurr.simulation.rhs import FLOATING_POINT, Array, implements_rhs, rhs
 
@@ -23,7 +23,7 @@ class PlanarLoaded(NamedTuple):
 
 
 class SpatialLoaded(NamedTuple):
-    """A model of any chain under a dead load of fixed shape."""
+    """A model of any chain under a load of fixed shape: dead forces, and couples on the elements."""
 
     model: Any  # kernel of the model without the load
     modes: Array  # (r, 4 N) Φᵀ, blocks ψ, θ, φ, s
@@ -32,6 +32,7 @@ class SpatialLoaded(NamedTuple):
     weightless: Array  # (3,) zeros: the load is on the elastic axis
     on_centres: Array  # (N, 3) [N]
     on_tip: Array  # (3,) [N]
+    couples: Array  # (N,) about the elements' own x axes [N m]
     start: float  # [s]
     end: float  # [s]
     frequency: float  # [rad/s]
@@ -89,6 +90,7 @@ def spatial_loaded_rhs(kernel, t, x, dx, work):
     for i in range(4 * n):
         forces[i] = 0.0
     add_dead_forces(axes, 0.0, kernel.weightless, kernel.on_centres, kernel.on_tip, forces)
+    add_couples(axes, kernel.couples, forces)
     for k in range(r):
         row = kernel.modes[k]
         force = 0.0

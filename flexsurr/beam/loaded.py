@@ -12,15 +12,15 @@ import numpy as np
 
 from flexsurr.beam.chain import chain
 from flexsurr.beam.compiled import all_joints, own, padded
-from flexsurr.beam.described import jacobians
-from flexsurr.beam.kinematics import configuration, generalised_forces, tip_position
+from flexsurr.beam.described import jacobians, twist_rates
+from flexsurr.beam.kinematics import configuration, generalised_forces, tip_position, tip_twist
 from flexsurr.beam.load_sweeps import (
     PlanarLoaded,
     SpatialLoaded,
     planar_load_work_size,
     spatial_load_work_size,
 )
-from flexsurr.beam.loads import Load
+from flexsurr.beam.loads import Forces, Load
 from flexsurr.beam.models import Implementation, check_implementation
 from flexsurr.beam.modes import ModalBasis
 from flexsurr.beam.planar import is_planar, plane
@@ -61,9 +61,13 @@ class LoadedModel(ABC):
         """(..., 3) position of the tip [m] at states x (..., 2r)."""
         return tip_position(self.projection.structure, self.projection.joints(x))
 
+    def twist(self, x: Array) -> Array:
+        """(...,) twist of the tip against the clamp [rad] at states x (..., 2r)."""
+        return tip_twist(self.projection.structure, self.projection.joints(x))
+
     @cached_property
-    def forces(self) -> tuple[Array, Array]:
-        """Forces on the elements' centres (N, 3) and the tip (3,) [N] at a factor of 1."""
+    def forces(self) -> Forces:
+        """What the load exerts at a factor of 1."""
         return self.load.forces(self.projection.structure)
 
     @abstractmethod
@@ -93,10 +97,12 @@ class DescribedLoad(InterpretedLoad):
 
     def generalised_force(self, eta: Array) -> Array:
         """Φᵀ Jᵀ F (r,) at η (r,)."""
-        on_centres, on_tip = self.forces
-        modes = self.projection.modes
-        _, of_centres, of_tip = jacobians(self.projection.structure, modes @ eta)
+        on_centres, on_tip, couples = self.forces
+        modes, structure = self.projection.modes, self.projection.structure
+        _, of_centres, of_tip = jacobians(structure, modes @ eta)
         forces = of_tip.T @ on_tip
+        if np.any(couples):
+            forces = forces + twist_rates(structure, modes @ eta).T @ couples
         for columns, force in zip(of_centres, on_centres, strict=True):
             forces = forces + columns.T @ force
         return modes.T @ forces
@@ -122,7 +128,7 @@ class VectorisedPlanarLoad(InterpretedLoad):
     @cached_property
     def _arms(self) -> tuple[Array, Array]:
         frame = plane(self.projection)
-        return frame.slopes, frame.moment_arms(*self.forces)
+        return frame.slopes, frame.moment_arms(self.forces.on_centres, self.forces.on_tip)
 
     def generalised_force(self, eta: Array) -> Array:
         """Φᵀ Jᵀ F (r,) at η (r,)."""
@@ -141,13 +147,14 @@ class CompiledLoad(LoadedModel):
         when = (history.start_s, history.end_s, history.frequency_rad_s, history.phase_rad)
         if is_planar(self.projection.structure):
             frame = plane(self.projection)
-            arms = frame.moment_arms(*self.forces)
+            arms = frame.moment_arms(self.forces.on_centres, self.forces.on_tip)
             return PlanarLoaded(self.model.kernel, padded(frame.slopes.T), padded(arms), *when)
         beam = chain(self.projection.structure)
-        modes, (on_centres, on_tip) = all_joints(self.projection), self.forces
+        modes, load = all_joints(self.projection), self.forces
+        on_centres, on_tip, couples = own(load.on_centres), own(load.on_tip), own(load.couples)
         return SpatialLoaded(
             self.model.kernel, modes, own(beam.clamp), beam.element_length, np.zeros(3),
-            own(on_centres), own(on_tip), *when,
+            on_centres, on_tip, couples, *when,
         )  # fmt: skip
 
     @property

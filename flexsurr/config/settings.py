@@ -11,7 +11,7 @@ from flexsurr.config.errors import ConfigurationError
 from flexsurr.config.merging import Source, build, merge
 from flexsurr.config.reading import read_yaml
 from flexsurr.config.schema import Record
-from flexsurr.config.structure import Structure
+from flexsurr.config.structure import Structure, check_within_span
 from flexsurr.config.study import Count, Study
 from flexsurr.config.sweep import Sweep
 
@@ -139,6 +139,14 @@ def _load_study(root: Path, name: str, sources: Sequence[Source]) -> ResolvedStu
                 f"the coordinates of {study.structure}"
             ]
         )
+    if (load := study.evaluation.distributed) is not None:
+        try:
+            check_within_span(
+                load.from_m, structure.length_m if load.to_m is None else load.to_m, structure.length_m
+            )
+        except ValueError as error:
+            holder = _holder(study_sources, ("evaluation", "distributed"))
+            raise ConfigurationError([f"{holder}: evaluation.distributed: {error}"]) from None
     return ResolvedStudy(name, study, structure, sweeps, tuple(others))
 
 

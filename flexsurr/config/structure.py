@@ -66,6 +66,11 @@ class Structure(Record):
         """n, the number of generalised coordinates: joint kinds times elements."""
         return len(self.joints) * self.elements
 
+    @property
+    def dissipates(self) -> bool:
+        """Whether any of its joints is damped."""
+        return any(self.damping_s(joint) > 0.0 for joint in self.joints)
+
     def section_stiffness(self, joint: Joint) -> float | None:
         """EI, GJ [N m²] or EA [N] that the springs of this joint kind come from."""
         value: float | None = getattr(self, STIFFNESS_KEY[joint])
@@ -75,6 +80,15 @@ class Structure(Record):
         """Rayleigh coefficient β [s] of this joint kind: C = K β."""
         value: float = getattr(self, f"damping_{joint}_s")
         return value
+
+
+def check_within_span(from_m: float, to_m: float, span_m: float) -> None:
+    """ValueError unless 0 ≤ `from_m` < `to_m` ≤ `span_m`."""
+    if not 0.0 <= from_m < to_m <= span_m:
+        raise ValueError(
+            f"from_m, to_m: a load from {from_m:g} to {to_m:g} m does not lie within the span "
+            f"(0 to {span_m:g} m)"
+        )
 
 
 STIFFNESS_KEY: dict[Joint, str] = {

@@ -10,6 +10,9 @@ from flexsurr.config.structure import NotNegative, Positive
 Variant = Literal["hamiltonian", "as_printed"]
 Count = Annotated[int, Field(ge=1)]
 
+DEFAULT = "default"
+"""What the sweep that figures show, and the dataset that surrogates are validated on, are called."""
+
 IntegratorMethod = Literal[
     "scipy_radau",
     "scipy_bdf",
@@ -78,8 +81,9 @@ class InitialConditions(Record):
 
 
 class DatasetSettings(Record):
-    """Free responses from random initial states, in shards."""
+    """Free responses from random initial states, in shards; drawn by `seed`, or else by the study's."""
 
+    seed: Annotated[int, Field(ge=0)] | None = None
     trajectories: Annotated[int, Field(ge=2)] = 50
     trajectories_per_shard: Count = 10
     duration_s: Positive = 0.2
@@ -103,6 +107,22 @@ class TipForce(Record):
     longest_s: Positive = 5.0
 
 
+class DistributedLoad(Record):
+    """Force along z and twisting couple per unit span, times sin(frequency t), from 0 to a random end.
+
+    Eqs. 13 and 14. `shape` is how both go along the span: uniform, linear (0 at the clamp), or elliptic
+    (0 at the tip); they act between `from_m` and `to_m` only, the tip where none is given.
+    """
+
+    force_N_m: float
+    couple_N_m_m: float = 0.0
+    frequency_rad_s: NotNegative
+    shape: Literal["uniform", "linear", "elliptic"] = "uniform"
+    from_m: NotNegative = 0.0
+    to_m: Positive | None = None
+    longest_s: Positive = 5.0
+
+
 class DescribedSimulations(Record):
     """How many simulations the described reduced model is timed on: it takes half a minute for each."""
 
@@ -116,7 +136,13 @@ class DescribedSimulations(Record):
 
 
 class EvaluationSettings(Record):
-    """Responses by which models are timed and judged."""
+    """Responses by which models are timed and judged.
+
+    `distributed`, where there is one, takes the place of `force` in all forced responses. Integrators:
+    `integrators` are timed, beside SciPy's Radau; `reference_integrator` gives what errors are measured from,
+    `judging_integrator` the responses by which runs are chosen, `drawing_integrator` those of the figures,
+    and `energy_integrator` those whose energy is drawn.
+    """
 
     simulations: Count = 10
     described_simulations: DescribedSimulations = DescribedSimulations()
@@ -127,6 +153,11 @@ class EvaluationSettings(Record):
     long_responses: Count = 5
     validation_duration_s: Positive = 1.0
     force: TipForce = TipForce()
+    distributed: DistributedLoad | None = None
+    reference_integrator: Integrator = Integrator(method="dop853", rtol=1e-12, atol=1e-14)
+    judging_integrator: Integrator = Integrator(method="dop853_fixed", step_s=0.01)
+    drawing_integrator: Integrator = Integrator(method="dop853", rtol=1e-10, atol=1e-12)
+    energy_integrator: Integrator = Integrator(method="gauss_legendre_6", step_s=0.002)
     integrators: tuple[Integrator, ...] = (
         Integrator(method="dop853_fixed", step_s=0.01),
         Integrator(method="dop853", rtol=1e-7, atol=1e-9),
@@ -148,7 +179,9 @@ class Study(Record):
     """One study. Paths are relative to the folder that holds the Snakefile.
 
     `sweeps` names each sweep of the study; the best surrogates of each stand side by side in the tables.
-    The one called `default` is the one the figures show. `frequencies_also_of` names structures whose
+    The one called `default` is the one the figures show. Besides `dataset`, which every surrogate is
+    validated on, there may be `further_datasets`, and `trains_on` says which of them a sweep trains on.
+    `frequencies_also_of` names structures whose
     natural frequencies are tabulated beside those of the study's own.
     """
 
@@ -159,18 +192,59 @@ class Study(Record):
     variants: Annotated[tuple[Variant, ...], Field(min_length=1)] = ("hamiltonian", "as_printed")
     reduction: Reduction
     dataset: DatasetSettings = DatasetSettings()
+    further_datasets: dict[str, DatasetSettings] = Field(default_factory=dict)
+    trains_on: dict[str, str] = Field(default_factory=dict)
     evaluation: EvaluationSettings = EvaluationSettings()
     statics: Statics = Statics()
 
     @model_validator(mode="after")
     def _names_are_plain(self) -> Self:
-        if "default" not in self.sweeps:
-            raise ValueError("sweeps: one of them is called default")
-        for name in self.sweeps:
-            if not name.isidentifier():
-                raise ValueError(
-                    f"sweeps: {name!r} is no plain name; allowed: letters, digits and underscores"
-                )
+        if DEFAULT not in self.sweeps:
+            raise ValueError(f"sweeps: one of them is called {DEFAULT}")
+        for key in ("sweeps", "further_datasets"):
+            for name in getattr(self, key):
+                if not name.isidentifier():
+                    raise ValueError(
+                        f"{key}: {name!r} is no plain name; allowed: letters, digits and underscores"
+                    )
         if len(set(self.variants)) != len(self.variants):
             raise ValueError("variants: each at most once")
         return self
+
+    @model_validator(mode="after")
+    def _datasets_are_apart(self) -> Self:
+        if DEFAULT in self.further_datasets:
+            raise ValueError(
+                f"further_datasets: {DEFAULT!r} is what `dataset` is called; another name is needed"
+            )
+        seeds = {"dataset": self.seed_of(self.dataset)}
+        for name, dataset in self.further_datasets.items():
+            seed = self.seed_of(dataset)
+            twin = next((other for other, used in seeds.items() if used == seed), None)
+            if twin is not None:
+                raise ValueError(
+                    f"further_datasets.{name}.seed: {seed} draws the same trajectories as {twin}; "
+                    "another seed is needed"
+                )
+            seeds[f"further_datasets.{name}"] = seed
+        for sweep, name in self.trains_on.items():
+            if sweep not in self.sweeps:
+                raise ValueError(f"trains_on: {sweep!r} is no sweep; allowed: {', '.join(self.sweeps)}")
+            if name not in self.datasets:
+                raise ValueError(
+                    f"trains_on.{sweep}: {name!r} is not allowed; allowed: {', '.join(self.datasets)}"
+                )
+        return self
+
+    @property
+    def datasets(self) -> dict[str, DatasetSettings]:
+        """Every dataset by its name; `dataset` is called "default"."""
+        return {DEFAULT: self.dataset, **self.further_datasets}
+
+    def seed_of(self, dataset: DatasetSettings) -> int:
+        """The seed by which the trajectories of a dataset are drawn."""
+        return self.seed if dataset.seed is None else dataset.seed
+
+    def dataset_of(self, sweep: str) -> str:
+        """The name of the dataset that a sweep trains on."""
+        return self.trains_on.get(sweep, DEFAULT)

@@ -12,19 +12,17 @@ from flexsurr.beam import (
     Implementation,
     Load,
     ModalBasis,
+    SineDistributedLoad,
     SineTipForce,
     draw_initial_conditions,
     loaded,
     reduced_order,
 )
-from flexsurr.config.study import Integrator, Study, TipForce, Variant
+from flexsurr.config.study import EvaluationSettings, Integrator, Study, Variant
 from flexsurr.simulation import simulate
 from flexsurr.simulation.rhs import Array, Model
 
 Response = Literal["free", "forced"]
-
-TIGHT = Integrator(method="dop853", rtol=1e-12, atol=1e-14)
-"""How every reference solution is integrated: far below any error that the tables show."""
 
 # A trajectory is drawn from its number. Training uses the numbers from 0; these lie out of reach, and
 # apart, so that a model is not judged by the responses that selected it.
@@ -38,11 +36,11 @@ DRAWN_EVERY_S = 0.002
 
 @dataclass(frozen=True)
 class Case:
-    """One simulation: its number, initial state x0 (2r,), and tip force (None: free response)."""
+    """One simulation: its number, initial state x0 (2r,), and load (None: free response)."""
 
     number: int
     x0: Array
-    load: SineTipForce | None = None
+    load: SineTipForce | SineDistributedLoad | None = None
 
     @property
     def free_from_s(self) -> float:
@@ -52,12 +50,16 @@ class Case:
 
 @dataclass(frozen=True)
 class Reference:
-    """A tight solution: times t (m,), states x (m, 2r), tip (m, 3) [m], largest tip displacement [m]."""
+    """A tight solution: times t (m,), states x (m, 2r), tip (m, 3) [m], largest tip displacement [m].
+
+    `energy` (m,) [J] is the exact Hamiltonian along it.
+    """
 
     case: Case
     t: Array
     x: Array
     tip: Array
+    energy: Array
     peak_m: float
 
 
@@ -68,12 +70,13 @@ def free_cases(basis: ModalBasis, study: Study, first: int, count: int) -> list[
 
 
 def forced_cases(basis: ModalBasis, study: Study, first: int, count: int) -> list[Case]:
-    """Responses from rest to the tip force, each acting from 0 to a random end in (0, longest_s]."""
-    force = study.evaluation.force
+    """Responses from rest to the study's load, which acts from 0 to a random end in (0, longest_s]."""
+    settings = study.evaluation
+    longest_s = (settings.distributed or settings.force).longest_s
     cases = []
     for number in range(first, first + count):
-        end_s = force.longest_s * (1.0 - np.random.default_rng([study.seed, number]).random())
-        cases.append(Case(number=number, x0=rest_state(basis), load=tip_force(force, end_s)))
+        end_s = longest_s * (1.0 - np.random.default_rng([study.seed, number]).random())
+        cases.append(Case(number=number, x0=rest_state(basis), load=excitation(settings, end_s)))
     return cases
 
 
@@ -83,15 +86,11 @@ def evaluation_cases(basis: ModalBasis, study: Study, response: Response) -> lis
     return draw(basis, study, FIRST_EVALUATION_CASE, study.evaluation.simulations)
 
 
-def tip_force(force: TipForce, end_s: float) -> SineTipForce:
-    """The study's tip force, acting from 0 to `end_s` [s]."""
-    return SineTipForce(
-        amplitude_N=force.amplitude_N,
-        frequency_rad_s=force.frequency_rad_s,
-        direction=force.direction,
-        start_s=0.0,
-        end_s=end_s,
-    )
+def excitation(settings: EvaluationSettings, end_s: float) -> SineTipForce | SineDistributedLoad:
+    """The study's distributed load, or else its tip force, acting from 0 to `end_s` [s]."""
+    if (spread := settings.distributed) is not None:
+        return SineDistributedLoad(**spread.model_dump(exclude={"longest_s"}), start_s=0.0, end_s=end_s)
+    return SineTipForce(**settings.force.model_dump(exclude={"longest_s"}), start_s=0.0, end_s=end_s)
 
 
 def rest_state(basis: ModalBasis, load: Load | None = None) -> Array:
@@ -120,23 +119,26 @@ def under(model: Model, basis: ModalBasis, case: Case, implementation: Implement
     return model if case.load is None else loaded(model, basis, case.load, implementation)
 
 
-def reference_solution(basis: ModalBasis, variant: Variant, case: Case, t: Array) -> Reference:
-    """The reduced-order model of `variant`, integrated tightly.
+def reference_solution(
+    basis: ModalBasis, variant: Variant, case: Case, t: Array, integrator: Integrator
+) -> Reference:
+    """The reduced-order model of `variant`, integrated tightly by the study's `reference_integrator`.
 
     Raises ArithmeticError if the reference itself does not reach the end: then nothing can be judged.
     """
     model = reduced_order(basis, variant, "compiled")
-    trajectory = simulate(under(model, basis, case, "compiled"), t, case.x0, TIGHT)
+    trajectory = simulate(under(model, basis, case, "compiled"), t, case.x0, integrator)
     if not trajectory.completed:
         raise ArithmeticError(f"reference {variant}, simulation {case.number}: {trajectory.reason}")
     tip = model.tip(trajectory.x)
     at_rest = model.tip(rest_state(basis))
     peak_m = float(np.linalg.norm(tip - at_rest, axis=1).max())
-    return Reference(case=case, t=t, x=trajectory.x, tip=tip, peak_m=peak_m)
+    energy = model.energy(trajectory.x)
+    return Reference(case=case, t=t, x=trajectory.x, tip=tip, energy=energy, peak_m=peak_m)
 
 
 def reference_solutions(
-    basis: ModalBasis, variant: Variant, cases: list[Case], t: Array
+    basis: ModalBasis, variant: Variant, cases: list[Case], t: Array, integrator: Integrator
 ) -> Iterator[Reference]:
     """One tight solution per case."""
-    return (reference_solution(basis, variant, case, t) for case in cases)
+    return (reference_solution(basis, variant, case, t, integrator) for case in cases)

@@ -13,7 +13,7 @@ from flexsurr.config.study import EvaluationSettings, Integrator, Study, Variant
 from flexsurr.evaluation.accuracy import tip_error
 from flexsurr.evaluation.cases import Reference, Response, evaluation_cases, reference_solutions, sample_times
 from flexsurr.evaluation.contenders import Contender, contenders
-from flexsurr.evaluation.energy import drift_percent
+from flexsurr.evaluation.energy import drift_percent, energy_error_percent
 from flexsurr.evaluation.published import beside
 from flexsurr.evaluation.ratios import COST_COLUMNS, PAPERS_INTEGRATOR, summary
 from flexsurr.evaluation.timing import one_thread, wall_time
@@ -91,13 +91,14 @@ def measurements(
 
     Columns: model, implementation, integrator, simulation, wall_s, completed; and over the samples
     that were reached tip_error_percent, tip_error_2s_percent, phase_lag_s, energy_drift_percent (of
-    the reference's exact Hamiltonian) and own_energy_drift_percent (of the model's own Hamiltonian, NaN
-    where it has none), both from the end of the load on.
+    the reference's exact Hamiltonian: `energy.energy_error_percent`) and own_energy_drift_percent (of the
+    model's own Hamiltonian, NaN where it has none or where something dissipates), drifts being counted
+    from the end of the load on.
     """
     settings = study.evaluation
     t = sample_times(settings.duration_s, settings.output_step_s)
     cases = evaluation_cases(basis, study, response)
-    references = list(reference_solutions(basis, variant, cases, t))
+    references = list(reference_solutions(basis, variant, cases, t, settings.reference_integrator))
     models = contenders(basis, variant, surrogates, with_torch=True)
     rows = []
     with one_thread():
@@ -145,9 +146,13 @@ def _measure(
         "tip_error_percent": error.whole_percent,
         "tip_error_2s_percent": error.short_percent,
         "phase_lag_s": error.phase_lag_s,
-        "energy_drift_percent": drift_percent(exact.energy(trajectory.x), trajectory.t, free_from_s),
+        "energy_drift_percent": energy_error_percent(
+            basis.structure, reference, exact.energy(trajectory.x), free_from_s
+        ),
         "own_energy_drift_percent": (
-            float("nan") if own is None else drift_percent(own, trajectory.t, free_from_s)
+            float("nan")
+            if own is None or basis.structure.dissipates
+            else drift_percent(own, trajectory.t, free_from_s)
         ),
     }
 

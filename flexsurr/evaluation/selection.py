@@ -5,14 +5,12 @@ import statistics
 from typing import Any
 
 from flexsurr.beam import ModalBasis, reduced_order
-from flexsurr.config.study import Integrator, Study, Variant
+from flexsurr.config.study import Study, Variant
 from flexsurr.evaluation.accuracy import tip_error
 from flexsurr.evaluation.cases import FIRST_SELECTION_CASE, free_cases, reference_solutions, sample_times
-from flexsurr.evaluation.energy import drift_percent
+from flexsurr.evaluation.energy import energy_error_percent
 from flexsurr.simulation import simulate
 from flexsurr.surrogates import compiled
-
-INTEGRATOR = Integrator(method="dop853_fixed", step_s=0.01)
 
 
 def long_response_errors(
@@ -31,11 +29,11 @@ def long_response_errors(
     exact = reduced_order(basis, variant, "numpy")
     errors, drifts, diverged = [], [], 0
     cases = free_cases(basis, study, FIRST_SELECTION_CASE, settings.long_responses)
-    for reference in reference_solutions(basis, variant, cases, t):
-        trajectory = simulate(model, t, reference.case.x0, INTEGRATOR)
+    for reference in reference_solutions(basis, variant, cases, t, settings.reference_integrator):
+        trajectory = simulate(model, t, reference.case.x0, settings.judging_integrator)
         if trajectory.completed:
             errors.append(tip_error(reference, exact.tip(trajectory.x)).whole_percent)
-            drifts.append(drift_percent(exact.energy(trajectory.x), t))
+            drifts.append(energy_error_percent(basis.structure, reference, exact.energy(trajectory.x), 0.0))
         else:
             errors.append(math.inf)
             drifts.append(math.inf)

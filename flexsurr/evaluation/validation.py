@@ -1,11 +1,11 @@
-"""Full and reduced order under a harmonic tip force, with both forms of the gyroscopic term (Fig. 9)."""
+"""Full and reduced order under a harmonic load, with both forms of the gyroscopic term (Fig. 9)."""
 
 import numpy as np
 import pandas as pd
 
 from flexsurr.beam import ModalBasis, find_equilibrium, full_order, loaded, reduced_order
 from flexsurr.config.study import Integrator, Study
-from flexsurr.evaluation.cases import rest_state, tip_force
+from flexsurr.evaluation.cases import excitation, rest_state
 from flexsurr.simulation import simulate
 
 VALIDATION_COLUMNS = ("variant", "model", "t_s", "tip_x_m", "tip_z_m")
@@ -18,7 +18,7 @@ INTEGRATOR = Integrator(method="radau_iia_5", rtol=1e-6, atol=1e-9)
 
 
 def validation_table(study: Study, basis: ModalBasis) -> pd.DataFrame:
-    """From rest under the study's tip force, for its validation_duration_s; columns `VALIDATION_COLUMNS`.
+    """From rest under the study's load, for its validation_duration_s; columns `VALIDATION_COLUMNS`.
 
     Tip positions in [m]. One block of rows for each of the study's variants and each model, "fom" and
     "rom". A trajectory that ends early ends its rows.
@@ -26,7 +26,7 @@ def validation_table(study: Study, basis: ModalBasis) -> pd.DataFrame:
     structure = basis.structure
     duration_s = study.evaluation.validation_duration_s
     t = np.linspace(0.0, duration_s, round(duration_s / STEP_S) + 1)
-    force = tip_force(study.evaluation.force, duration_s)
+    load = excitation(study.evaluation, duration_s)
     equilibrium = find_equilibrium(structure)
     rest = np.concatenate([equilibrium, np.zeros_like(equilibrium)])
     frames = []
@@ -37,7 +37,7 @@ def validation_table(study: Study, basis: ModalBasis) -> pd.DataFrame:
             ("fom", fom, structure, rest),
             ("rom", rom, basis, rest_state(basis)),
         ):
-            trajectory = simulate(loaded(model, place, force, "compiled"), t, start, INTEGRATOR)
+            trajectory = simulate(loaded(model, place, load, "compiled"), t, start, INTEGRATOR)
             tip = model.tip(trajectory.x)
             frames.append(
                 pd.DataFrame(

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
+from flexsurr.config.study import DEFAULT
 from flexsurr.config.sweep import Space, Sweep, Trial
 
 DIGITS = 10
@@ -31,9 +32,11 @@ def expand(sweep: Sweep) -> list[Trial]:
     return list(trials)
 
 
-def run_id(trial: Trial, study: str, variant: str) -> str:
+def run_id(trial: Trial, study: str, variant: str, dataset: str = DEFAULT) -> str:
     """The architecture and ten hex digits of the hash of everything that names a run."""
     content = {"study": study, "variant": variant, "trial": trial.model_dump(mode="json")}
+    if dataset != DEFAULT:
+        content["dataset"] = dataset
     canonical = json.dumps(content, sort_keys=True, separators=(",", ":"))
     return f"{trial.architecture}-{hashlib.sha256(canonical.encode()).hexdigest()[:DIGITS]}"
 

@@ -15,7 +15,7 @@ from typing import Any
 from flexsurr.config.errors import ConfigurationError
 from flexsurr.config.part import values_of
 from flexsurr.config.settings import Configuration, ResolvedStudy
-from flexsurr.config.study import Variant
+from flexsurr.config.study import DEFAULT, Study, Variant
 from flexsurr.config.sweep import Trial
 from flexsurr.training.sweep import expand, run_id
 
@@ -39,10 +39,18 @@ JUDGEMENT = (
     "evaluation.duration_s",
     "evaluation.output_step_s",
     "evaluation.long_responses",
+    "evaluation.reference_integrator",
+    "evaluation.judging_integrator",
 )
 STATICS = ("reduction", "statics")
-VALIDATION = ("reduction", "variants", "evaluation.force", "evaluation.validation_duration_s")
-RESPONSES = (
+VALIDATION = (
+    "reduction",
+    "variants",
+    "evaluation.force",
+    "evaluation.distributed",
+    "evaluation.validation_duration_s",
+)
+EVALUATION = (
     "seed",
     "reduction",
     "dataset.initial_conditions",
@@ -50,10 +58,13 @@ RESPONSES = (
     "evaluation.output_step_s",
     "evaluation.simulations",
     "evaluation.force",
+    "evaluation.distributed",
     "evaluation.integrators",
+    "evaluation.reference_integrator",
 )
+RESPONSES = (*EVALUATION, "evaluation.drawing_integrator", "evaluation.energy_integrator")
 COST = (
-    *RESPONSES,
+    *EVALUATION,
     "evaluation.described_simulations",
     "evaluation.scipy_simulations",
     "evaluation.repeats",
@@ -62,11 +73,22 @@ COST = (
 
 @dataclass(frozen=True)
 class Run:
-    """One training run: a trial of a sweep on the data of one variant."""
+    """One training run: a trial of a sweep on a dataset of one variant."""
 
     study: str
     variant: Variant
+    dataset: str
     trial: Trial
+
+    @property
+    def data(self) -> str:
+        """The folder of the data, below that of the study's datasets."""
+        return data_folder(self.variant, self.dataset)
+
+
+def data_folder(variant: str, dataset: str) -> str:
+    """The folder of one dataset of one variant: the variant's name, and that of a further dataset."""
+    return variant if dataset == DEFAULT else f"{variant}-{dataset}"
 
 
 class Plan:
@@ -81,10 +103,11 @@ class Plan:
     def runs(self) -> dict[str, Run]:
         """Training runs by their run_id."""
         return {
-            run_id(trial, name, variant): Run(name, variant, trial)
-            for name, study in self.studies.items()
-            for variant in study.study.variants
-            for trials in self._trials[name].values()
+            run_id(trial, name, variant, dataset): Run(name, variant, dataset, trial)
+            for name, resolved in self.studies.items()
+            for variant in resolved.study.variants
+            for sweep, trials in self._trials[name].items()
+            for dataset in [resolved.study.dataset_of(sweep)]
             for trial in trials
         }
 
@@ -96,34 +119,34 @@ class Plan:
         """The variants of one study's reference model."""
         return self.studies[study].study.variants
 
-    def shards(self, study: str) -> int:
-        """Number of shards of each dataset of one study."""
-        return self.studies[study].study.dataset.shards
+    def shards(self, study: str, data: str) -> int:
+        """Number of shards of the dataset in the folder `data` of one study."""
+        return self._settings(study, data).dataset.shards
 
-    def simulate(self, study: str, variant: str, shard: int | str) -> Job:
+    def simulate(self, study: str, data: str, shard: int | str) -> Job:
         """One shard, by its number: trajectories `first` to `first + count − 1`."""
-        dataset = self.studies[study].study.dataset
+        dataset = self._settings(study, data).dataset
         first = int(shard) * dataset.trajectories_per_shard
         return {
-            **self._dataset(study, variant),
-            "configuration": self.dataset_hash(study, variant),
+            **self._dataset(study, data),
+            "configuration": self.dataset_hash(study, data),
             "first": first,
             "count": min(dataset.trajectories_per_shard, dataset.trajectories - first),
         }
 
-    def dataset_hash(self, study: str, variant: str) -> str:
+    def dataset_hash(self, study: str, data: str) -> str:
         """The hash of every value that the trajectories of a dataset depend on."""
-        canonical = json.dumps(self._dataset(study, variant), sort_keys=True)
+        canonical = json.dumps(self._dataset(study, data), sort_keys=True)
         return hashlib.sha256(canonical.encode()).hexdigest()[:16]
 
-    def manifest(self, study: str, variant: str) -> Job:
+    def manifest(self, study: str, data: str) -> Job:
         """The manifest of one dataset."""
-        settings = self.studies[study].study
+        settings = self._settings(study, data)
         return {
             "study": study,
-            "variant": variant,
+            "variant": _variant(data),
             "seed": settings.seed,
-            "configuration": self.dataset_hash(study, variant),
+            "configuration": self.dataset_hash(study, data),
             "trajectories": settings.dataset.trajectories,
             "training_fraction": settings.dataset.training_fraction,
         }
@@ -136,7 +159,13 @@ class Plan:
         """One training run."""
         run = self.runs[key]
         trial = run.trial.model_dump(mode="json")
-        return {"run_id": key, "study": run.study, "variant": run.variant, "trial": trial}
+        return {
+            "run_id": key,
+            "study": run.study,
+            "variant": run.variant,
+            "dataset": run.dataset,
+            "trial": trial,
+        }
 
     def judge(self, study: str) -> Job:
         """Long responses of all runs of a study."""
@@ -145,7 +174,11 @@ class Plan:
     def select(self, study: str) -> Job:
         """The choice among the runs of each sweep of a study."""
         sweeps = {
-            sweep: [run_id(trial, study, variant) for variant in self.variants(study) for trial in trials]
+            sweep: [
+                run_id(trial, study, variant, self.studies[study].study.dataset_of(sweep))
+                for variant in self.variants(study)
+                for trial in trials
+            ]
             for sweep, trials in self._trials[study].items()
         }
         return {"study": study, "sweeps": sweeps}
@@ -195,8 +228,19 @@ class Plan:
         structure = resolved.structure.model_dump(mode="json")
         return {"structure": structure, "part": values_of(resolved.study, keys)}
 
-    def _dataset(self, study: str, variant: str) -> Job:
-        return {**self._part(study, DATASET), "study": study, "variant": variant}
+    def _dataset(self, study: str, data: str) -> Job:
+        part = values_of(self._settings(study, data), DATASET)
+        return {**self._part(study, ()), "part": part, "study": study, "variant": _variant(data)}
+
+    def _settings(self, study: str, data: str) -> Study:
+        """The study as if the dataset in the folder `data` were its only one."""
+        settings = self.studies[study].study
+        dataset = settings.datasets[data.partition("-")[2] or DEFAULT]
+        return settings.model_copy(update={"dataset": dataset, "seed": settings.seed_of(dataset)})
+
+
+def _variant(data: str) -> str:
+    return data.partition("-")[0]
 
 
 def _trials(study: ResolvedStudy) -> dict[str, tuple[Trial, ...]]:

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given, settings
 from structures import ALL_JOINTS, CANTILEVER, SEEDS, change, coordinates, structures
 
-from flexsurr.beam import element_frames, node_positions, tip_position
+from flexsurr.beam import element_frames, node_positions, tip_position, tip_twist
 from flexsurr.beam.chain import chain
 from flexsurr.beam.described import jacobians, points
 from flexsurr.beam.described import velocities as described_velocities
@@ -95,3 +95,15 @@ def test_the_clamp_turns_with_the_signs_of_the_joints():
 def test_a_vector_of_the_wrong_length_is_refused():
     with pytest.raises(ValueError, match=r"q has shape \(9,\); cantilever has 10 coordinates"):
         tip_position(CANTILEVER, np.zeros(9))
+
+
+def test_twist_is_the_angle_of_torsion_whatever_the_clamp_and_the_bending_before():
+    """Torsion at the last element alone adds its angle to that of the chain without it."""
+    structure = change(ALL_JOINTS, elements=4)
+    q = np.zeros(16)
+    torsion = slice(8, 12)
+    q[torsion] = [0.1, -0.3, 0.6, 0.2]
+    assert tip_twist(structure, q) == pytest.approx(0.6, abs=1e-14)
+    q = coordinates(structure, 1)
+    before, after = (tip_twist(structure, q + angle * np.eye(16)[11]) for angle in (0.0, 0.25))
+    assert after - before == pytest.approx(0.25, abs=1e-13)

@@ -4,13 +4,16 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from structures import CANTILEVER, SEEDS, basis_of, change, state, structures
+from scipy.integrate import quad
+from structures import CANTILEVER, SEEDS, basis_of, change, coordinates, state, structures
 from test_implementations import assert_close
 
 from flexsurr.beam import (
     DeadTipForce,
     DistributedForce,
+    SineDistributedLoad,
     SineTipForce,
+    element_frames,
     full_order,
     loaded,
     reduced_order,
@@ -27,6 +30,7 @@ LOADS = st.one_of(
     VECTORS.map(DeadTipForce),
     VECTORS.map(lambda v: SineTipForce(10.0, 50.0, v, 0.0, 2.0)),
     VECTORS.map(lambda v: DistributedForce(v, 0.5, 3.0)),
+    VECTORS.map(lambda v: SineDistributedLoad(v[0], v[1], 3.0, "elliptic", 0.1, 1.0)),
 )
 
 
@@ -61,6 +65,47 @@ def test_loads_do_virtual_work(structure, force, seed):
         np.testing.assert_allclose(added[:r], 0.0)
         scale = np.abs(model.derivative(0.0, x)).max() + np.abs(work.imag / 1e-30).max()
         np.testing.assert_allclose(added[r:], work.imag / 1e-30, rtol=0.0, atol=1e-12 * scale)
+
+
+@given(structures(), st.floats(-20.0, 20.0), SEEDS)
+def test_couples_do_virtual_work(structure, couple, seed):
+    """Each couple's power is its size times its element's turning about its own x axis (by differences)."""
+    x = state(structure, seed)
+    n = structure.coordinates
+    q, rates = x[:n], coordinates(structure, seed + 1)
+    step = 1e-6
+    before, at, after = (element_frames(structure, q + s * step * rates) for s in (-1.0, 0.0, 1.0))
+    turning = np.swapaxes(at, -1, -2) @ (after - before) / (2.0 * step)
+    load = SineDistributedLoad(0.0, couple, 1.0)
+    power = load.forces(structure).couples @ turning[:, 2, 1]
+    model = full_order(structure, "hamiltonian", "numpy")
+    added = loaded(model, structure, load, "numpy").derivative(0.5 * np.pi, x) - model.derivative(
+        0.5 * np.pi, x
+    )
+    assert added[n:] @ rates == pytest.approx(power, abs=1e-7 * (1.0 + abs(couple)))
+
+
+@pytest.mark.parametrize("shape", ["uniform", "linear", "elliptic"])
+def test_elements_receive_the_integral_over_their_own_span(shape):
+    structure = change(CANTILEVER, elements=7)
+    load = SineDistributedLoad(3.0, 2.0, 1.0, shape, 0.25, 0.9)
+    along = {"uniform": lambda x: 1.0, "linear": lambda x: x, "elliptic": lambda x: np.sqrt(1.0 - x * x)}[
+        shape
+    ]
+    forces = load.forces(structure)
+    for i in range(7):
+        low, high = np.clip([i / 7, (i + 1) / 7], 0.25, 0.9)
+        integral = quad(along, low, high)[0]
+        np.testing.assert_allclose(forces.on_centres[i], [0.0, 0.0, 3.0 * integral], atol=1e-12)
+        assert forces.couples[i] == pytest.approx(2.0 * integral, abs=1e-12)
+    assert not forces.on_tip.any()
+
+
+@pytest.mark.parametrize(("low", "high"), [(-0.1, 0.5), (0.0, 1.01), (0.5, 0.5)])
+def test_a_load_outside_the_span_is_refused(low, high):
+    load = SineDistributedLoad(3.0, 2.0, 1.0, "uniform", low, high)
+    with pytest.raises(ValueError, match="does not lie within the span"):
+        load.forces(CANTILEVER)
 
 
 def test_a_load_acts_from_its_start_until_just_before_its_end():
@@ -146,6 +191,9 @@ def test_a_model_of_other_coordinates_is_refused():
         (lambda: DeadTipForce((1.0, 2.0)), "force_N"),
         (lambda: DeadTipForce((1.0, 2.0, float("nan"))), "force_N"),
         (lambda: DistributedForce((1.0, float("inf"), 0.0)), "force_N_m"),
+        (lambda: SineDistributedLoad(float("inf"), 0.0, 1.0), "force_N_m"),
+        (lambda: SineDistributedLoad(1.0, float("nan"), 1.0), "couple_N_m_m"),
+        (lambda: SineDistributedLoad(1.0, 1.0, 1.0, "parabolic"), "shape"),
         (lambda: SineTipForce(1.0, 1.0, (0.0, 0.0, 0.0)), "direction"),
         (lambda: SineTipForce(float("nan"), 1.0), "amplitude_N"),
         (lambda: SineTipForce(1.0, -1.0), "frequency_rad_s"),

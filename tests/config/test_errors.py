@@ -41,6 +41,7 @@ def refusal(root: Path, *files: str) -> str:
     return str(caught.value)
 
 
+LOAD = {"force_N_m": 1.0, "frequency_rad_s": 2.0}
 BAD_VALUES = [
     (CONFIG, "resutls", "x", ["resutls", "'x'", "did you mean 'results'", "tracking"]),
     (CONFIG, "studies", [], ["studies", "[]", "at least one value"]),
@@ -68,6 +69,17 @@ BAD_VALUES = [
     (STUDY, "dataset.duration", 0.2, ["dataset.duration", "0.2", "did you mean 'duration_s'"]),
     (STUDY, "dataset.training_fraction", 1.0, ["dataset.training_fraction", "1.0", "less than 1"]),
     (STUDY, "dataset", 5, ["dataset", "5", "keys with values"]),
+    (STUDY, "trains_on", {"default": "many"}, ["trains_on.default", "'many'", "allowed: default"]),
+    (STUDY, "trains_on", {"other": "default"}, ["trains_on", "'other'", "allowed: default"]),
+    (STUDY, "further_datasets", {"many": {}}, ["further_datasets.many.seed", "2024", "another seed"]),
+    (STUDY, "further_datasets", {"default": {"seed": 1}}, ["further_datasets", "'default'", "another name"]),
+    (STUDY, "further_datasets", {"a b": {"seed": 1}}, ["further_datasets", "'a b'", "plain name"]),
+    (STUDY, "evaluation.distributed", {**LOAD, "to_m": 1.5}, ["evaluation.distributed", "1.5 m", "the span"]),
+    (STUDY, "evaluation.distributed", {**LOAD, "from_m": -1}, ["distributed.from_m", "-1", "greater than"]),
+    (STUDY, "evaluation.distributed", {**LOAD, "shape": "oval"}, ["distributed.shape", "'oval'", "elliptic"]),
+    (STUDY, "frequencies_also_of", ["absent.yaml"], ["frequencies_also_of", "absent.yaml", "no file"]),
+    (STRUCTURE, "damping_torsion_s", -10.0, ["damping_torsion_s", "-10.0", "greater than or equal to 0"]),
+    (STRUCTURE, "centre_of_gravity_offset_m", 0.2, ["centre_of_gravity_offset_m", "0.2", "chord", "0.1 m"]),
     (STUDY, "evaluation.integrators", [{"method": "rk5"}], ["integrators[0].method", "'rk5'", "rk4"]),
     (STUDY, "evaluation.integrators", [{"method": "rk4"}], ["integrators[0]", "takes step_s"]),
     (SWEEP, "spaces.0.activation", ["sigmoid"], ["activation[0]", "'sigmoid'", "tanh"]),

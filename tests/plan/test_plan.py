@@ -38,7 +38,7 @@ def jobs(root: Path) -> dict[str, str]:
         found[f"respond {variant}"] = p.respond(BEAM, variant)
         for response in ("free", "forced"):
             found[f"cost {variant} {response}"] = p.cost(BEAM, variant, response)
-        for shard in range(p.shards(BEAM)):
+        for shard in range(p.shards(BEAM, variant)):
             found[f"simulate {variant} {shard}"] = p.simulate(BEAM, variant, shard)
     return {name: json.dumps(job, sort_keys=True) for name, job in found.items()}
 
@@ -64,6 +64,10 @@ CHANGES = [
     (STUDY, "dataset.training_fraction", 0.7, {"manifest"}),
     (STUDY, "dataset.initial_conditions.q_max_deg", 10.0, ALL_DATA | JUDGED),
     (STUDY, "evaluation.force.amplitude_N", 5.0, {"validation", "respond", "cost"}),
+    (STUDY, "evaluation.judging_integrator", {"method": "dop853"}, {"judge"}),
+    (STUDY, "evaluation.drawing_integrator", {"method": "radau_iia_5"}, {"respond"}),
+    (STUDY, "evaluation.reference_integrator", {"method": "radau_iia_5"}, JUDGED),
+    (STUDY, "frequencies_also_of", ["config/structures/wing.yaml"], {"statics"}),
     (QUICK, f"{OVER}.dataset.trajectories", 9, {"manifest", "simulate"}),
     (QUICK, f"{OVER}.evaluation.repeats", 2, {"cost"}),
     (QUICK, f"{OVER}.evaluation.described_simulations.as_printed", 2, {"cost"}),
@@ -116,6 +120,31 @@ def test_a_run_is_named_by_its_content(root):
     keys = list(plan(root).runs)
     change(root, SWEEP, "spaces", yaml.safe_load((root / SWEEP).read_text())["spaces"][::-1])
     assert sorted(plan(root).runs) == sorted(keys)
+
+
+def test_a_further_dataset_is_drawn_by_its_own_seed_and_trained_on_by_the_sweep_that_says_so(root):
+    before = jobs(root)
+    many = {"seed": 7, "trajectories": 20, "trajectories_per_shard": 20, "step_s": 0.05}
+    change(root, STUDY, "further_datasets.many", many)
+    assert jobs(root) == before
+    change(root, STUDY, "sweeps.many", SWEEP)
+    change(root, STUDY, "trains_on.many", "many")
+    p = plan(root)
+    assert {name for name in before if before[name] != jobs(root)[name]} == {
+        f"judge {BEAM}",
+        f"select {BEAM}",
+    }
+    assert len(p.runs_of(BEAM)) == 2 * len(p.select(BEAM)["sweeps"]["default"])
+    assert {p.runs[key].data for key in p.select(BEAM)["sweeps"]["many"]} == {
+        "hamiltonian-many",
+        "as_printed-many",
+    }
+    assert p.shards(BEAM, "as_printed-many") == 1
+    usual, further = p.simulate(BEAM, "hamiltonian", 0), p.simulate(BEAM, "hamiltonian-many", 0)
+    assert (further["count"], further["part"]["seed"], further["variant"]) == (20, 7, "hamiltonian")
+    assert further["part"]["dataset"]["step_s"] == 0.05
+    assert further["configuration"] != usual["configuration"]
+    assert p.manifest(BEAM, "hamiltonian-many")["seed"] == 7
 
 
 def test_the_last_shard_holds_what_is_left(root):

@@ -4,20 +4,21 @@
 wildcard_constraints:
     study="[A-Za-z0-9_]+",
     variant="hamiltonian|as_printed",
+    data=r"(hamiltonian|as_printed)(-\w+)?",
     response="free|forced",
     shard=r"\d+",
 
 
 rule simulate_shard:
     output:
-        f"{RESULTS}/datasets/{{study}}/{{variant}}/shard-{{shard}}.parquet",
+        f"{RESULTS}/datasets/{{study}}/{{data}}/shard-{{shard}}.parquet",
     log:
-        f"{RESULTS}/logs/simulate/{{study}}-{{variant}}-{{shard}}.log",
+        f"{RESULTS}/logs/simulate/{{study}}-{{data}}-{{shard}}.log",
     params:
-        job=job("simulate", "study", "variant", "shard"),
+        job=job("simulate", "study", "data", "shard"),
         code=code("simulate"),
     message:
-        "simulating shard {wildcards.shard} of {wildcards.study}, {wildcards.variant}"
+        "simulating shard {wildcards.shard} of {wildcards.study}, {wildcards.data}"
     shell:
         "python -m flexsurr.cli.simulate --job {params.job:q} --output {output:q} > {log:q} 2>&1"
 
@@ -25,18 +26,18 @@ rule simulate_shard:
 rule manifest:
     input:
         shards=lambda w: expand(
-            f"{RESULTS}/datasets/{w.study}/{w.variant}/shard-{{shard:04d}}.parquet",
-            shard=range(plan.shards(w.study)),
+            f"{RESULTS}/datasets/{w.study}/{w.data}/shard-{{shard:04d}}.parquet",
+            shard=range(plan.shards(w.study, w.data)),
         ),
     output:
-        f"{RESULTS}/datasets/{{study}}/{{variant}}/manifest.json",
+        f"{RESULTS}/datasets/{{study}}/{{data}}/manifest.json",
     log:
-        f"{RESULTS}/logs/manifest/{{study}}-{{variant}}.log",
+        f"{RESULTS}/logs/manifest/{{study}}-{{data}}.log",
     params:
-        job=job("manifest", "study", "variant"),
+        job=job("manifest", "study", "data"),
         code=code("manifest"),
     message:
-        "checking the dataset of {wildcards.study}, {wildcards.variant}"
+        "checking the dataset of {wildcards.study}, {wildcards.data}"
     shell:
         "python -m flexsurr.cli.manifest --job {params.job:q} --shards {input.shards:q} --output {output:q}"
         " > {log:q} 2>&1"

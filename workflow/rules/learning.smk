@@ -19,7 +19,7 @@ rule train:
     # The store is ancient: a new one is no reason to train anew.
     input:
         manifest=lambda w: (
-            f"{RESULTS}/datasets/{plan.runs[w.run_id].study}/{plan.runs[w.run_id].variant}/manifest.json"
+            f"{RESULTS}/datasets/{plan.runs[w.run_id].study}/{plan.runs[w.run_id].data}/manifest.json"
         ),
         store=ancient(rules.tracking_store.output[0]),
     output:
