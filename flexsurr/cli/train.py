@@ -15,6 +15,7 @@ from flexsurr.config.sweep import Trial
 from flexsurr.storage import replacing, write_json
 from flexsurr.surrogates import save
 from flexsurr.training import Fit, fit, load_dataset
+from flexsurr.training.sweep import run_id
 from flexsurr.training.tracking import read_store, tracked
 
 log = logging.getLogger(__name__)
@@ -89,6 +90,8 @@ def _figures(job: Job, trial: Trial, result: Fit, dataset_sha256: str) -> dict[s
         "run_id": job["run_id"],
         "study": job["study"],
         "variant": job["variant"],
+        # the same for all seeds, by which runs are gathered
+        "configuration": run_id(trial.model_copy(update={"seed": 0}), job["study"], job["variant"]),
         "status": result.status,
         "reason": result.reason,
         "architecture": trial.architecture,

@@ -27,6 +27,7 @@ from flexsurr.report.energy_figures import figure_13
 from flexsurr.report.kinematic_figures import figure_03, figure_04
 from flexsurr.report.response_figures import figure_10, figure_12
 from flexsurr.report.schematics import figure_05, figure_06, figure_11
+from flexsurr.report.seeds import seeds
 from flexsurr.report.style import save
 from flexsurr.report.tables import save_page, save_table
 from flexsurr.report.training_figures import training_loss
@@ -62,6 +63,7 @@ TABLES: dict[str, Product[pd.DataFrame]] = {
     "static_tip": Product("Tip under static loads", tables.static_tip, ("statics",)),
     "natural_frequencies": Product("Natural frequencies", tables.natural_frequencies, ("frequencies",)),
     "training": Product("Training runs", tables.training, ("metrics",)),
+    "seeds": Product("Mean and spread over seeds", seeds, ("metrics",)),
     "cost": Product("Cost and accuracy", tables.cost, ("cost-*-*",)),
 }
 

@@ -11,6 +11,9 @@ CONTRACT = {
     "natural_frequencies": "structure, mode, fom_rad_s, rom_rad_s, published_fom_rad_s, published_rom_rad_s",
     "training": "study, variant, run_id, architecture, hidden, activation, optimiser, epochs, wall_s, "
     "train_nmse, validation_nmse",
+    "seeds": "study, variant, configuration, architecture, hidden, activation, degree, optimiser, seeds, "
+    "failed, wall_s_mean, wall_s_std, validation_nmse_mean, validation_nmse_std_decades, "
+    "long_response_error_percent_mean, long_response_error_percent_std, diverged",
     "cost": "study, variant, response, model, implementation, integrator, simulations, wall_s_mean, "
     "wall_s_std, relative_to_described_percent, relative_to_described_std_percent, "
     "relative_to_numpy_percent, relative_to_compiled_percent, paper_percent, paper_std_percent, "
@@ -31,7 +34,13 @@ def frames(statics, metrics, cost):
             "exact_rad_s": [None, None],
         }
     )
-    return {"static_tip": statics, "natural_frequencies": frequencies, "training": metrics, "cost": cost}
+    return {
+        "static_tip": statics,
+        "natural_frequencies": frequencies,
+        "training": metrics,
+        "seeds": metrics,
+        "cost": cost,
+    }
 
 
 @pytest.mark.parametrize("name", TABLES)
