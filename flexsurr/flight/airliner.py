@@ -11,7 +11,7 @@ from flexsurr.flight.modes import FreeModes
 from flexsurr.flight.surface_motion import surface_motion
 
 DEFAULT_MODES = (1, 2, 5, 6, 7, 8)
-"""The elastic modes that the aerodynamics knows, counted from 1; the paper leaves out the third and fourth."""
+"""The elastic modes that the aerodynamics knows, counted from 1; the paper leaves out two of the eight."""
 
 
 def modal_motion(modes: FreeModes, lattice: Lattice, chosen: Sequence[int] = DEFAULT_MODES) -> ModalMotion:

@@ -1,0 +1,151 @@
+"""Equations of motion of a flexible aircraft in mean axes, compiled.
+
+Source: M. R. Waszak, D. K. Schmidt, *Flight dynamics of aeroelastic vehicles*, J. Aircraft 25 (1988) 563–571.
+In mean axes elastic motion carries neither momentum nor angular momentum; with the inertia of the
+undeformed shape the rigid-body equations are those of a rigid aircraft, and only the aerodynamics couples
+them with
+
+    η̈ + 2 ζ ω η̇ + ω² η = Q .
+
+Body axes: x forward, y right, z down, origin at the centre of gravity. Earth: north, east, and altitude
+upwards, flat and at rest. Attitude: φ, θ, ψ in the order 3-2-1, singular at θ = ±90°. Uniform gravity does no
+work in mean axes.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+from flexsurr.aerodynamics.features import (
+    ALPHA,
+    ALTITUDE,
+    BETA,
+    COEFFICIENTS,
+    CONTROLS,
+    FEATURES,
+    FIRST_CONTROL,
+    FIRST_ETA,
+    FIRST_ETA_RATE,
+    MACH,
+    MODES,
+    RATE_P,
+    RATE_Q,
+    RATE_R,
+)
+from flexsurr.aerodynamics.standard_atmosphere import density, speed_of_sound
+from flexsurr.simulation.mapping import mapping
+from flexsurr.simulation.rhs import Array, implements_rhs
+
+RIGID_STATES = 12
+INPUTS = len(FEATURES)
+SCRATCH = INPUTS + len(COEFFICIENTS)
+
+
+class FlexibleAircraft(NamedTuple):
+    """Constants of the equations, and the kernel of an aerodynamics: 25 features to 12 coefficients.
+
+    `inertia` and its inverse (3, 3) in body axes; `omega_squared`, `damping` = 2 ζ ω, and `thrust_shape` (the
+    generalised force of each mode for a unit of thrust), (k,). `places` (6,): which of the k modes each of
+    the aerodynamics' is, −1 where it has none. `controls` (6,): their positions in trim; `command` (6,) is
+    added to them from `times`[0] to [1] and taken from them from [1] to [2].
+    """
+
+    mass: float
+    gravity: float
+    area: float
+    chord: float
+    span: float
+    inertia: Array
+    inverse_inertia: Array
+    omega_squared: Array
+    damping: Array
+    places: Array
+    thrust: float
+    thrust_height: float
+    thrust_shape: Array
+    controls: Array
+    command: Array
+    times: Array
+    aerodynamics: Any
+
+
+@implements_rhs(FlexibleAircraft, inline=False)
+def _motion(kernel, t, x, dx, work):
+    k_modes = kernel.omega_squared.size
+    phi, theta, psi = x[3], x[4], x[5]
+    u, v, w = x[6], x[7], x[8]
+    p, q, r = x[9], x[10], x[11]
+    airspeed = math.sqrt(u * u + v * v + w * w)
+    altitude = x[2]
+
+    # features, coefficients and the aerodynamics' own scratch share `work`
+    features = work[0:INPUTS]
+    coefficients = work[INPUTS:SCRATCH]
+    scratch = work[SCRATCH:]
+    over = 1.0 / airspeed
+    features[MACH] = airspeed / speed_of_sound(altitude)
+    features[ALTITUDE] = altitude
+    features[ALPHA] = math.atan2(w, u)
+    features[BETA] = math.asin(v * over)
+    features[RATE_P] = p * over
+    features[RATE_Q] = q * over
+    features[RATE_R] = r * over
+    sign = 0.0
+    if kernel.times[0] <= t < kernel.times[1]:
+        sign = 1.0
+    elif kernel.times[1] <= t < kernel.times[2]:
+        sign = -1.0
+    for i in range(CONTROLS):
+        features[FIRST_CONTROL + i] = kernel.controls[i] + sign * kernel.command[i]
+    for i in range(MODES):
+        place = int(kernel.places[i])
+        features[FIRST_ETA + i] = x[RIGID_STATES + place] if place >= 0 else 0.0
+        features[FIRST_ETA_RATE + i] = x[RIGID_STATES + k_modes + place] * over if place >= 0 else 0.0
+    mapping(kernel.aerodynamics, features, coefficients, scratch)
+    pressure = 0.5 * density(altitude) * airspeed * airspeed * kernel.area
+
+    sin_phi, cos_phi = math.sin(phi), math.cos(phi)
+    sin_theta, cos_theta = math.sin(theta), math.cos(theta)
+    sin_psi, cos_psi = math.sin(psi), math.cos(psi)
+    # kinematics
+    dx[0] = (
+        cos_theta * cos_psi * u
+        + (sin_phi * sin_theta * cos_psi - cos_phi * sin_psi) * v
+        + (cos_phi * sin_theta * cos_psi + sin_phi * sin_psi) * w
+    )
+    dx[1] = (
+        cos_theta * sin_psi * u
+        + (sin_phi * sin_theta * sin_psi + cos_phi * cos_psi) * v
+        + (cos_phi * sin_theta * sin_psi - sin_phi * cos_psi) * w
+    )
+    dx[2] = sin_theta * u - sin_phi * cos_theta * v - cos_phi * cos_theta * w
+    turn = (q * sin_phi + r * cos_phi) / cos_theta
+    dx[3] = p + turn * sin_theta
+    dx[4] = q * cos_phi - r * sin_phi
+    dx[5] = turn
+    # forces
+    per_mass = pressure / kernel.mass
+    g = kernel.gravity
+    dx[6] = per_mass * coefficients[0] + kernel.thrust / kernel.mass - g * sin_theta - q * w + r * v
+    dx[7] = per_mass * coefficients[1] + g * cos_theta * sin_phi - r * u + p * w
+    dx[8] = per_mass * coefficients[2] + g * cos_theta * cos_phi - p * v + q * u
+    # moments
+    inertia, inverse = kernel.inertia, kernel.inverse_inertia
+    hx = inertia[0, 0] * p + inertia[0, 1] * q + inertia[0, 2] * r
+    hy = inertia[1, 0] * p + inertia[1, 1] * q + inertia[1, 2] * r
+    hz = inertia[2, 0] * p + inertia[2, 1] * q + inertia[2, 2] * r
+    mx = pressure * kernel.span * coefficients[3] - (q * hz - r * hy)
+    my = pressure * kernel.chord * coefficients[4] + kernel.thrust * kernel.thrust_height - (r * hx - p * hz)
+    mz = pressure * kernel.span * coefficients[5] - (p * hy - q * hx)
+    for i in range(3):
+        dx[9 + i] = inverse[i, 0] * mx + inverse[i, 1] * my + inverse[i, 2] * mz
+    # elastic modes
+    for i in range(k_modes):
+        eta, rate = x[RIGID_STATES + i], x[RIGID_STATES + k_modes + i]
+        dx[RIGID_STATES + i] = rate
+        dx[RIGID_STATES + k_modes + i] = (
+            kernel.thrust * kernel.thrust_shape[i] - kernel.damping[i] * rate - kernel.omega_squared[i] * eta
+        )
+    for i in range(MODES):
+        place = int(kernel.places[i])
+        if place >= 0:
+            dx[RIGID_STATES + k_modes + place] += pressure * coefficients[6 + i]
