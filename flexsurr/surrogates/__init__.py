@@ -7,6 +7,9 @@ from flexsurr.surrogates.hnn import HNN
 from flexsurr.surrogates.mlp import MLP
 from flexsurr.surrogates.network import Network
 from flexsurr.surrogates.polynomial import PolynomialHamiltonian
+from flexsurr.surrogates.port_hamiltonian import PortHamiltonian
+from flexsurr.surrogates.port_hamiltonian_network import NetworkPortHamiltonian
+from flexsurr.surrogates.port_hamiltonian_polynomial import PolynomialPortHamiltonian
 from flexsurr.surrogates.saved import SurrogateFileError, load, load_model, save
 from flexsurr.surrogates.scaling import (
     FeatureScaling,
@@ -28,8 +31,11 @@ __all__ = [
     "FeatureScaling",
     "Hamiltonian",
     "Network",
+    "NetworkPortHamiltonian",
     "PairScaling",
     "PolynomialHamiltonian",
+    "PolynomialPortHamiltonian",
+    "PortHamiltonian",
     "Scaling",
     "StateScaling",
     "Surrogate",

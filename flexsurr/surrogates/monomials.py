@@ -61,6 +61,34 @@ def products(exponents: Exponents) -> tuple[NDArray[np.int64], NDArray[np.int64]
     return parents, np.array([_last_variable(row) for row in rows], dtype=np.int64)
 
 
+def factors(exponents: Exponents) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Of a set that begins with the constant: monomial k + 1 is monomial parents[k] times factor [k].
+
+    Factors 0 … d − 1 are the variables; those after them are the products of variables i ≥ j, number
+    d + i (i + 1) / 2 + j. A set of even degrees needs only products, and is built without the odd ones.
+    Raises ValueError for a set that does not begin with the constant or cannot be built so.
+    """
+    rows = [tuple(row) for row in exponents.tolist()]
+    if not rows or any(rows[0]):
+        raise ValueError("the first monomial must be the constant")
+    d = exponents.shape[1]
+    place = {row: k for k, row in enumerate(rows)}
+    parents, of_factors = [], []
+    for k, row in enumerate(rows[1:], start=1):
+        i = _last_variable(row)
+        once = _divided(row)
+        j = _last_variable(once)
+        if sum(row) > 1 and place.get(_divided(once), k) < k:
+            parents.append(place[_divided(once)])
+            of_factors.append(d + i * (i + 1) // 2 + j)
+        elif place.get(once, k) < k:
+            parents.append(place[once])
+            of_factors.append(i)
+        else:
+            raise ValueError(f"monomial {row} is no product of an earlier one and one or two variables")
+    return np.array(parents, dtype=np.int64), np.array(of_factors, dtype=np.int64)
+
+
 def _last_variable(row: tuple[int, ...]) -> int:
     return max((j for j, power in enumerate(row) if power), default=0)
 

@@ -15,6 +15,8 @@ from flexsurr.surrogates.dissipative_hnn import DissipativeHNN
 from flexsurr.surrogates.hnn import HNN
 from flexsurr.surrogates.mlp import MLP
 from flexsurr.surrogates.polynomial import PolynomialHamiltonian
+from flexsurr.surrogates.port_hamiltonian_network import NetworkPortHamiltonian
+from flexsurr.surrogates.port_hamiltonian_polynomial import PolynomialPortHamiltonian
 from flexsurr.surrogates.scaling import FeatureScaling, PairScaling, Scaling, StateScaling
 from flexsurr.surrogates.surrogate import Surrogate
 
@@ -37,8 +39,10 @@ def save(surrogate: Surrogate, path: str | Path) -> None:
         **surrogate.settings(),
     }
     arrays = {"header": np.array(json.dumps(header)), "parameters": surrogate.parameters}
-    if isinstance(surrogate, PolynomialHamiltonian):
+    if isinstance(surrogate, PolynomialHamiltonian | PolynomialPortHamiltonian):
         arrays["exponents"] = surrogate.exponents
+    if isinstance(surrogate, NetworkPortHamiltonian):
+        arrays["floor"] = surrogate.floor
     with replacing(Path(path)) as beside, beside.open("wb") as file:
         np.savez(file, allow_pickle=False, **arrays)
 
@@ -72,10 +76,17 @@ def _surrogate(header: dict[str, Any], arrays: dict[str, np.ndarray]) -> Surroga
         "state_names": tuple(header["state_names"]),
         "state_units": tuple(header["state_units"]),
     }
-    if header["architecture"] == PolynomialHamiltonian.architecture:
-        return PolynomialHamiltonian(**common, exponents=arrays["exponents"].astype(np.int64, casting="safe"))
-    network = NETWORKS[header["architecture"]]
-    return network(**common, hidden=tuple(header["hidden"]), activation=header["activation"])
+    architecture = header["architecture"]
+    polynomial = {
+        PolynomialHamiltonian.architecture: PolynomialHamiltonian,
+        PolynomialPortHamiltonian.architecture: PolynomialPortHamiltonian,
+    }.get(architecture)
+    if polynomial is not None and "hidden" not in header:
+        return polynomial(**common, exponents=arrays["exponents"].astype(np.int64, casting="safe"))
+    common |= {"hidden": tuple(header["hidden"]), "activation": header["activation"]}
+    if architecture == NetworkPortHamiltonian.architecture:
+        return NetworkPortHamiltonian(**common, floor=np.ascontiguousarray(arrays["floor"], dtype=np.float64))
+    return NETWORKS[architecture](**common)
 
 
 def _scaling(values: dict[str, Any]) -> StateScaling:

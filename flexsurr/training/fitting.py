@@ -26,9 +26,10 @@ from flexsurr.training.adam import Adam
 from flexsurr.training.checkpoint import read_checkpoint, remove_checkpoint, write_checkpoint
 from flexsurr.training.dataset import Dataset
 from flexsurr.training.initialisation import initial_parameters
+from flexsurr.training.inverse_dynamics import NotPositiveDefinite, fit_port_hamiltonian
 from flexsurr.training.least_squares import fit_polynomial
 from flexsurr.training.levenberg_marquardt import LevenbergMarquardt
-from flexsurr.training.losses import nmse
+from flexsurr.training.losses import nmse, nmse_per_state
 from flexsurr.training.objective import Objective
 from flexsurr.training.optimiser import Optimiser
 from flexsurr.training.progress import Progress
@@ -61,6 +62,7 @@ class Fit:
     validation_nmse: float
     parameters: int
     history: pd.DataFrame
+    validation_nmse_per_state: tuple[float, ...]
 
 
 def fit(trial: Trial, dataset: Dataset, folder: str | Path, report: Report | None = None) -> Fit:
@@ -74,8 +76,8 @@ def fit(trial: Trial, dataset: Dataset, folder: str | Path, report: Report | Non
     limit ends it).
     """
     folder = Path(folder)
-    if trial.architecture == "polynomial":
-        return _fit_polynomial(trial, dataset, report)
+    if trial.optimiser == "least_squares":
+        return _fit_linear(trial, dataset, report)
     network = _untrained(trial, dataset)
     training = Objective.of(network, dataset.x_train, dataset.dx_train)
     validation = Objective.of(network, dataset.x_validation, dataset.dx_validation)
@@ -117,6 +119,7 @@ def fit(trial: Trial, dataset: Dataset, folder: str | Path, report: Report | Non
         validation_nmse=validation.loss(network.parameters),
         parameters=network.parameter_count,
         history=progress.history(),
+        validation_nmse_per_state=_per_state(network, dataset),
     )
 
 
@@ -162,27 +165,42 @@ def _optimiser(trial: Trial, objective: Objective) -> Optimiser:
     )
 
 
-def _fit_polynomial(trial: Trial, dataset: Dataset, report: Report | None) -> Fit:
+def _fit_linear(trial: Trial, dataset: Dataset, report: Report | None) -> Fit:
     assert trial.degree is not None  # a Trial of a polynomial has one
     start = time.perf_counter()
-    polynomial = fit_polynomial(dataset, trial.degree)
+    reason = ""
+    surrogate: Surrogate
+    if trial.architecture == "polynomial":
+        surrogate = fit_polynomial(dataset, trial.degree)
+    else:
+        try:
+            surrogate = fit_port_hamiltonian(dataset, trial.degree)
+        except NotPositiveDefinite as failure:
+            surrogate, reason = failure.surrogate, str(failure)
     losses = (
-        nmse(polynomial.derivative(0.0, dataset.x_train), dataset.dx_train),
-        nmse(polynomial.derivative(0.0, dataset.x_validation), dataset.dx_validation),
+        nmse(surrogate.derivative(0.0, dataset.x_train), dataset.dx_train),
+        nmse(surrogate.derivative(0.0, dataset.x_validation), dataset.dx_validation),
     )
-    progress = Progress(math.inf, polynomial.parameters)
-    progress.add(time.perf_counter() - start, *losses, polynomial.parameters)
+    progress = Progress(math.inf, surrogate.parameters)
+    progress.add(time.perf_counter() - start, *losses, surrogate.parameters)
     if report is not None:
         report(1, *losses, progress.wall_s)
     return Fit(
-        surrogate=polynomial,
-        status="finished",
-        reason="",
+        surrogate=surrogate,
+        status="failed" if reason else "finished",
+        reason=reason,
         epochs=1,
         best_epoch=1,
         wall_s=progress.wall_s,
         train_nmse=losses[0],
         validation_nmse=losses[1],
-        parameters=polynomial.parameter_count,
+        parameters=surrogate.parameter_count,
         history=progress.history(),
+        validation_nmse_per_state=_per_state(surrogate, dataset),
     )
+
+
+def _per_state(surrogate: Surrogate, dataset: Dataset) -> tuple[float, ...]:
+    """The nmse of each state's derivative over the validation samples."""
+    predicted = surrogate.derivative(0.0, dataset.x_validation)
+    return tuple(nmse_per_state(predicted, dataset.dx_validation).tolist())

@@ -12,7 +12,6 @@ with the fewest terms among those that validate about as well as the best is kep
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import lstsq, qr
 
 from flexsurr.simulation.rhs import Array
 from flexsurr.surrogates import PolynomialHamiltonian, canonical_scaling
@@ -25,6 +24,7 @@ from flexsurr.surrogates.monomials import (
 from flexsurr.surrogates.surrogate import symplectic
 from flexsurr.training.dataset import Dataset
 from flexsurr.training.losses import nmse, output_weights
+from flexsurr.training.triangle import Triangle
 
 CHUNK = 1 << 21  # elements of the matrix that exist at a time: 16 MB
 AS_GOOD = 2.0  # losses within this factor of the least count as equal
@@ -46,7 +46,7 @@ def fit_polynomial(dataset: Dataset, degree: int) -> PolynomialHamiltonian:
     candidates = []
     for chosen in _subsets(exponents):
         polynomial = PolynomialHamiltonian(
-            _solve(triangle[:, :-1][:, chosen], triangle[:, -1]),
+            triangle.solve(chosen),
             scaling,
             dataset.state_names,
             dataset.state_units,
@@ -71,13 +71,13 @@ def _subsets(exponents: Exponents) -> list[NDArray[np.bool_]]:
     return [everything, even, mechanical, mechanical & even]
 
 
-def _reduced(exponents: Exponents, x: Array, y: Array) -> Array:
-    """Triangle of the matrix [fields of the monomials, y], both weighted: at most (terms + 1) square."""
+def _reduced(exponents: Exponents, x: Array, y: Array) -> Triangle:
+    """Of the matrix [fields of the monomials, y], both weighted."""
     d = x.shape[1]
     lower, tensor = differentiate(exponents)
     roots = np.sqrt(output_weights(y) / len(x))
     step = max(CHUNK // (d * (len(exponents) + 1)), 1)
-    triangle = np.empty((0, len(exponents) + 1))
+    triangle = Triangle(len(exponents))
     for first in range(0, len(x), step):
         part = slice(first, first + step)
         # (samples, monomial, d): the field of each monomial
@@ -86,14 +86,5 @@ def _reduced(exponents: Exponents, x: Array, y: Array) -> Array:
         )
         rows = np.concatenate([fields, y[part, None, :]], axis=1) * roots
         rows = rows.transpose(0, 2, 1).reshape(-1, len(exponents) + 1)
-        (triangle,) = qr(np.concatenate([triangle, rows]), mode="r", overwrite_a=True)
-        triangle = triangle[: triangle.shape[1]]
+        triangle.add(rows)
     return triangle
-
-
-def _solve(matrix: Array, target: Array) -> Array:
-    norms = np.linalg.norm(matrix, axis=0)
-    norms[norms == 0.0] = 1.0
-    threshold = np.finfo(np.float64).eps * len(norms)
-    solution, *_ = lstsq(matrix / norms, target, cond=threshold, lapack_driver="gelsy")
-    return solution / norms

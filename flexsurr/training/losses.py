@@ -19,3 +19,9 @@ def output_weights(target: Array) -> Array:
 def nmse(predicted: Array, target: Array) -> float:
     """Mean squared error over the variance of the target, averaged over outputs; both (m, d)."""
     return float(np.mean((predicted - target) ** 2, axis=0) @ output_weights(target))
+
+
+def nmse_per_state(predicted: Array, target: Array) -> Array:
+    """Mean squared error of each output over its target's variance, (m, d) -> (d,); their mean is `nmse`."""
+    errors: Array = np.mean((predicted - target) ** 2, axis=0) * output_weights(target) * target.shape[1]
+    return errors

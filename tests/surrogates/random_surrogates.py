@@ -1,9 +1,23 @@
 """Surrogates with random weights."""
 
+import math
+from dataclasses import replace
+
 import numpy as np
 
-from flexsurr.surrogates import HNN, MLP, DissipativeHNN, Network, PolynomialHamiltonian, Scaling
+from flexsurr.surrogates import (
+    HNN,
+    MLP,
+    DissipativeHNN,
+    Network,
+    NetworkPortHamiltonian,
+    PairScaling,
+    PolynomialHamiltonian,
+    PolynomialPortHamiltonian,
+    Scaling,
+)
 from flexsurr.surrogates.monomials import Exponents, monomials_to_degree
+from flexsurr.surrogates.packed import pack, packed_size
 
 SCALING = Scaling(q=0.6, p=6.0, energy=40.0)
 
@@ -42,5 +56,51 @@ HAMILTONIANS = {
     "polynomial": polynomial(4, 5),
     "mechanical": polynomial(2, 7, "mechanical"),
     "even": polynomial(2, 8, "even"),
+}
+PAIRS = PairScaling(q=(0.6, 2.0, 0.1), action=3.6, energy=40.0)
+
+
+def pair_scaling(count: int) -> PairScaling:
+    """Different scales for each of up to three pairs."""
+    return replace(PAIRS, q=PAIRS.q[: count // 2])
+
+
+def port_polynomial(
+    count: int, degree: int, even: bool, seed: int = 0, spread: float = 0.02
+) -> PolynomialPortHamiltonian:
+    """M near the identity, K positive definite, C of rank r − 1 (one pair: positive)."""
+    generator, r = np.random.default_rng(seed), count // 2
+    exponents: Exponents = np.concatenate([np.zeros((1, r), dtype=np.int64), monomials_to_degree(r, degree)])
+    exponents = exponents[exponents.sum(axis=1) % 2 == 0] if even else exponents
+    mass = spread * generator.normal(size=(packed_size(r), len(exponents)))
+    mass[:, 0] += pack(np.eye(r))
+    springs = generator.normal(size=(r, r))
+    dampers = pack(np.tril(generator.normal(size=(r, r))))
+    dampers[-1] = 0.0 if r > 1 else 0.4
+    parameters = np.concatenate([mass.ravel(), pack(springs @ springs.T), dampers])
+    return PolynomialPortHamiltonian(parameters, pair_scaling(count), **states(count), exponents=exponents)
+
+
+def port_network(count: int, neurons: int, activation: str, seed: int = 0) -> NetworkPortHamiltonian:
+    """Any weights; the floor of M is a tenth of the identity and more."""
+    generator, r = np.random.default_rng(seed), count // 2
+    size = sum(math.prod(shape) for shape in NetworkPortHamiltonian.shapes(r, neurons))
+    floor = pack(0.1 * np.eye(r) + 0.01)
+    return NetworkPortHamiltonian(
+        0.5 * generator.normal(size=size),
+        pair_scaling(count),
+        **states(count),
+        floor=floor,
+        hidden=(neurons,),
+        activation=activation,
+    )
+
+
+PORT_HAMILTONIANS = {
+    "one pair": port_polynomial(2, 3, even=False),
+    "even": port_polynomial(6, 4, even=True),
+    "odd and even": port_polynomial(6, 3, even=False),
+    "network of one pair": port_network(2, 5, "half_log"),
+    "network": port_network(6, 7, "softplus"),
 }
 NETWORKS = {"hnn": HNN, "mlp": MLP, "dissipative_hnn": DissipativeHNN}

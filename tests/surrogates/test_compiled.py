@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from random_surrogates import HAMILTONIANS, NETWORKS, network
+from random_surrogates import HAMILTONIANS, NETWORKS, PORT_HAMILTONIANS, network
 
 from flexsurr.config.study import Integrator
 from flexsurr.simulation import simulate
@@ -16,7 +16,8 @@ def assert_same(surrogate, number=20):
     model = compiled(surrogate)
     assert isinstance(model, CompiledModel)
     count = len(surrogate.state_names)
-    x = np.random.default_rng(1).uniform(-2.0, 2.0, (number, count)) * surrogate.scaling.states(count)
+    reach = 1.0 if surrogate.architecture == "port_hamiltonian" else 2.0
+    x = np.random.default_rng(1).uniform(-reach, reach, (number, count)) * surrogate.scaling.states(count)
     expected = surrogate.derivative(0.0, x)
     found = np.array([model.derivative(0.0, state) for state in x])
     assert np.all(np.abs(found - expected) <= 1e-12 * np.max(np.abs(expected), axis=0))
@@ -25,6 +26,11 @@ def assert_same(surrogate, number=20):
 @pytest.mark.parametrize("name", HAMILTONIANS)
 def test_hamiltonians(name):
     assert_same(HAMILTONIANS[name])
+
+
+@pytest.mark.parametrize("name", PORT_HAMILTONIANS)
+def test_port_hamiltonians(name):
+    assert_same(PORT_HAMILTONIANS[name])
 
 
 @pytest.mark.parametrize("architecture", ["hnn", "mlp"])

@@ -5,7 +5,13 @@ import math
 import numpy as np
 import pytest
 
-from flexsurr.surrogates.monomials import differentiate, evaluate_monomials, monomials_to_degree, products
+from flexsurr.surrogates.monomials import (
+    differentiate,
+    evaluate_monomials,
+    factors,
+    monomials_to_degree,
+    products,
+)
 
 
 @pytest.mark.parametrize(("variables", "degree"), [(1, 7), (2, 10), (4, 5), (6, 3)])
@@ -40,3 +46,24 @@ def test_products_rebuild_a_sparse_set():
     for parent, variable in zip(parents, variables, strict=True):
         values.append(values[parent] * x[variable])
     np.testing.assert_allclose(values, evaluate_monomials(lower, x), rtol=1e-14)
+
+
+@pytest.mark.parametrize("parity", ["all", "even"])
+def test_factors_rebuild_a_set_from_itself(parity):
+    exponents = np.concatenate([np.zeros((1, 3), dtype=np.int64), monomials_to_degree(3, 6)])
+    if parity == "even":
+        exponents = exponents[exponents.sum(axis=1) % 2 == 0]
+    x = np.array([1.3, -0.4, 0.7])
+    available = np.concatenate([x, np.outer(x, x)[np.tril_indices(3)]])
+    values = [1.0]
+    for parent, factor in zip(*factors(exponents), strict=True):
+        values.append(values[parent] * available[factor])
+    np.testing.assert_allclose(values, evaluate_monomials(exponents, x), rtol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("exponents", "reason"), [([[1, 0]], "constant"), ([[0, 0], [2, 1]], r"monomial \(2, 1\)")]
+)
+def test_a_set_that_cannot_be_built_is_refused(exponents, reason):
+    with pytest.raises(ValueError, match=reason):
+        factors(np.array(exponents))

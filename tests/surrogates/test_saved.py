@@ -4,11 +4,24 @@ import json
 
 import numpy as np
 import pytest
-from random_surrogates import HAMILTONIANS, network
+from random_surrogates import HAMILTONIANS, PORT_HAMILTONIANS, network
 
-from flexsurr.surrogates import MLP, CompiledSurrogate, SurrogateFileError, load, load_model, save
+from flexsurr.surrogates import (
+    MLP,
+    CompiledSurrogate,
+    DissipativeHNN,
+    SurrogateFileError,
+    load,
+    load_model,
+    save,
+)
 
-KINDS = [*HAMILTONIANS.values(), network(MLP, 4, (5, 3), "silu")]
+KINDS = [
+    *HAMILTONIANS.values(),
+    *PORT_HAMILTONIANS.values(),
+    network(MLP, 4, (5, 3), "silu"),
+    network(DissipativeHNN, 4, (5, 3), "silu"),
+]
 
 
 @pytest.mark.parametrize("surrogate", KINDS)

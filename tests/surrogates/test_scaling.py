@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from random_surrogates import SCALING, network, polynomial
+from random_surrogates import PAIRS, SCALING, network, polynomial
 
 from flexsurr.surrogates import (
     HNN,
@@ -68,7 +68,6 @@ def test_weights_must_fit():
         replace(hnn, state_names=("a",), state_units=("1",))
 
 
-PAIRS = PairScaling(q=(0.6, 2.0, 0.1), action=3.6, energy=40.0)
 FEATURES = FeatureScaling(x=(0.6, 2.0, 0.1, 3.0, 1.0, 5.0), dx=(30.0, 40.0, 9.0, 70.0, 80.0, 20.0))
 
 

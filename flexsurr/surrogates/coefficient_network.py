@@ -1,0 +1,174 @@
+"""A network from features to coefficients: one hidden layer, inputs and outputs scaled to ±1.
+
+What the study puts in place of its vortex lattice (25 features, 75 neurons, 12 coefficients). Unlike the
+other surrogates it is no right-hand side but a part of one.
+"""
+
+import json
+import math
+import zipfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from flexsurr.simulation.mapping import CompiledMapping, implements_mapping
+from flexsurr.simulation.rhs import Array
+from flexsurr.storage import replacing
+from flexsurr.surrogates.activations import ACTIVATIONS, value
+from flexsurr.surrogates.saved import SurrogateFileError
+
+FORMAT = "flexsurr coefficient network 1"
+ARRAYS = ("parameters", "input_low", "input_high", "output_low", "output_high")
+
+
+def shapes_of(inputs: int, hidden: int, outputs: int) -> list[tuple[int, ...]]:
+    """Shapes of the hidden weights and biases, then of the output's, as they follow in `parameters`."""
+    return [(inputs, hidden), (hidden,), (hidden, outputs), (outputs,)]
+
+
+@dataclass(frozen=True, eq=False)
+class CoefficientNetwork:
+    """Coefficients (..., k) of features (..., n), in plain NumPy; `compiled` gives the fast form.
+
+    The intervals `input_low` to `input_high` (n,) and `output_low` to `output_high` (k,), in the units of
+    features and coefficients, are what the network sees as −1 to 1. `parameters` holds hidden weights
+    (n, hidden) and biases (hidden,), then the output's (hidden, k) and (k,). Raises ValueError for arrays
+    that don't fit.
+    """
+
+    parameters: Array
+    hidden: int
+    activation: str
+    input_low: Array
+    input_high: Array
+    output_low: Array
+    output_high: Array
+    input_names: tuple[str, ...]
+    output_names: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        if self.activation not in ACTIVATIONS:
+            raise ValueError(f"activation {self.activation!r} is not one of {', '.join(ACTIVATIONS)}")
+        n, k = len(self.input_names), len(self.output_names)
+        if self.hidden < 1 or self.parameters.shape != (sum(map(math.prod, shapes_of(n, self.hidden, k))),):
+            raise ValueError(
+                f"{self.parameters.shape} parameters don't make {n} x {self.hidden} x {k} neurons"
+            )
+        for low, high, count in (
+            (self.input_low, self.input_high, n),
+            (self.output_low, self.output_high, k),
+        ):
+            if low.shape != (count,) or high.shape != (count,) or not np.all(low < high):
+                raise ValueError("each input and each output has an interval, and low < high")
+
+    def arrays(self) -> list[Array]:
+        """Views of the parameters in their shapes."""
+        shapes = shapes_of(len(self.input_names), self.hidden, len(self.output_names))
+        pieces = np.split(self.parameters, np.cumsum([math.prod(shape) for shape in shapes[:-1]]))
+        return [piece.reshape(shape) for piece, shape in zip(pieces, shapes, strict=True)]
+
+    def __call__(self, u: Array) -> Array:
+        """Coefficients (..., k) at features `u` (..., n)."""
+        weights, biases, weights_out, biases_out = self.arrays()
+        x = (u - _middle(self.input_low, self.input_high)) / _half(self.input_low, self.input_high)
+        y = ACTIVATIONS[self.activation].value(x @ weights + biases) @ weights_out + biases_out
+        return _middle(self.output_low, self.output_high) + _half(self.output_low, self.output_high) * y
+
+    def compiled(self) -> CompiledMapping:
+        """The same function as compiled code, scales folded into the weights."""
+        weights, biases, weights_out, biases_out = self.arrays()
+        scale = 1.0 / _half(self.input_low, self.input_high)
+        half = _half(self.output_low, self.output_high)
+        kernel = CoefficientNetworkKernel(
+            activation=ACTIVATIONS[self.activation].tag,
+            weights=np.ascontiguousarray(weights * scale[:, None]),
+            # subtracted before it meets a weight, so that large features cost no digits
+            origin=_middle(self.input_low, self.input_high),
+            biases=biases.copy(),
+            weights_out=np.ascontiguousarray((weights_out * half).T),
+            biases_out=_middle(self.output_low, self.output_high) + half * biases_out,
+        )
+        return CompiledMapping(kernel, self.hidden, self.input_names, self.output_names)
+
+
+class CoefficientNetworkKernel(NamedTuple):
+    """weights (n, hidden), origin (n,), biases (hidden,), weights_out (k, hidden), biases_out (k,)."""
+
+    activation: NamedTuple
+    weights: Array
+    origin: Array
+    biases: Array
+    weights_out: Array
+    biases_out: Array
+
+
+@implements_mapping(CoefficientNetworkKernel)
+def _coefficient_network(kernel, u, y, work):
+    activation, weights, origin, biases, weights_out, biases_out = kernel
+    # unsigned: numba lets a signed index be negative, and a loop over such does not vectorise
+    hidden = np.uint64(biases.size)
+    for k in range(hidden):
+        work[k] = biases[k]
+    for j in range(np.uint64(origin.size)):
+        x = u[j] - origin[j]
+        for k in range(hidden):
+            work[k] += x * weights[j, k]
+    for k in range(hidden):
+        work[k] = value(activation, work[k])
+    for i in range(np.uint64(biases_out.size)):
+        total = biases_out[i]
+        for k in range(hidden):
+            total += work[k] * weights_out[i, k]
+        y[i] = total
+
+
+def save_coefficient_network(network: CoefficientNetwork, path: str | Path) -> None:
+    """Write `network` to `path` (.npz) whole: beside its place first, then moved there."""
+    header = {
+        "format": FORMAT,
+        "hidden": network.hidden,
+        "activation": network.activation,
+        "input_names": network.input_names,
+        "output_names": network.output_names,
+    }
+    arrays = {name: getattr(network, name) for name in ARRAYS}
+    with replacing(Path(path)) as beside, beside.open("wb") as file:
+        np.savez(file, allow_pickle=False, header=np.array(json.dumps(header)), **arrays)
+
+
+def load_coefficient_network(path: str | Path) -> CoefficientNetwork:
+    """The network in `path`. Raises SurrogateFileError for a damaged or foreign file, OSError for none."""
+    try:
+        with Path(path).open("rb") as content, np.load(content, allow_pickle=False) as file:
+            arrays = dict(file)
+    except FileNotFoundError:
+        raise
+    except (OSError, EOFError, ValueError, TypeError, zipfile.BadZipFile) as error:
+        raise SurrogateFileError(f"{path}: not a readable .npz file ({error})") from None
+    try:
+        header = json.loads(str(arrays["header"]))
+        if header["format"] != FORMAT:
+            raise SurrogateFileError(f"{path}: format {header['format']!r}, expected {FORMAT!r}")
+        values = {name: np.ascontiguousarray(arrays[name], dtype=np.float64) for name in ARRAYS}
+        if not all(np.all(np.isfinite(array)) for array in values.values()):
+            raise ValueError("numbers that are not finite")
+        return CoefficientNetwork(
+            **values,
+            hidden=header["hidden"],
+            activation=header["activation"],
+            input_names=tuple(header["input_names"]),
+            output_names=tuple(header["output_names"]),
+        )
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        detail = f"no {error}" if isinstance(error, KeyError) else error
+        raise SurrogateFileError(f"{path}: not a coefficient network of flexsurr ({detail})") from None
+
+
+def _middle(low: Array, high: Array) -> Array:
+    return 0.5 * (low + high)
+
+
+def _half(low: Array, high: Array) -> Array:
+    return 0.5 * (high - low)

@@ -1,0 +1,115 @@
+"""Port-Hamiltonian surrogates: ẋ = (J − R) ∇H + G u, passive whatever their parameters.
+
+    H = ½ pᵀ M⁻¹(q) p + ½ qᵀ K q,   J = [0 I; −I 0],   R = blockdiag(0, C),   C = L Lᵀ,   G = [0; I]
+
+so that q̇ = M⁻¹ p and ṗ = ½ ∂/∂q (q̇ᵀ M q̇) − K q − C q̇ + u, and with no load dH/dt = −q̇ᵀ C q̇ ≤ 0 (van der
+Schaft & Jeltsema, *Port-Hamiltonian Systems Theory*, 2014, ch. 6). The mass matrix is what is learned, not
+its inverse: with measured q̇ the equations are linear in M, K and C.
+"""
+
+from abc import abstractmethod
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numba import njit
+
+from flexsurr.simulation.rhs import Array
+from flexsurr.surrogates.packed import OPTIONS, packed_size
+from flexsurr.surrogates.scaling import FeatureScaling
+from flexsurr.surrogates.surrogate import Surrogate
+
+
+@dataclass(frozen=True, eq=False)
+class PortHamiltonian(Surrogate):
+    """A subclass has a mass matrix; r is the number of pairs (q, p). Everything here is in scaled states."""
+
+    architecture: ClassVar[str] = "port_hamiltonian"
+
+    def __post_init__(self) -> None:
+        if isinstance(self.scaling, FeatureScaling):
+            raise ValueError("a port-Hamiltonian surrogate takes a canonical scaling")
+        super().__post_init__()
+
+    @property
+    def pairs(self) -> int:
+        """Number r of pairs (q, p)."""
+        return len(self.state_names) // 2
+
+    @property
+    def packed_size(self) -> int:
+        """Number of entries of a packed (r, r) matrix."""
+        return packed_size(self.pairs)
+
+    @abstractmethod
+    def scaled_mass(self, q: Array) -> Array:
+        """M̂ at scaled coordinates, (..., r) -> (..., r, r)."""
+
+    @abstractmethod
+    def scaled_mass_derivatives(self, q: Array) -> Array:
+        """∂M̂/∂q̂_k, (..., r) -> (..., r, r, r) with k first."""
+
+    @property
+    @abstractmethod
+    def scaled_stiffness(self) -> Array:
+        """K̂ (r, r), symmetric."""
+
+    @property
+    @abstractmethod
+    def scaled_damping(self) -> Array:
+        """Ĉ (r, r), symmetric and positive semidefinite."""
+
+    def scaled_field(self, x: Array) -> Array:
+        """(J − R) ∇Ĥ."""
+        q, p = x[..., : self.pairs], x[..., self.pairs :]
+        rates = np.linalg.solve(self.scaled_mass(q), p[..., None])[..., 0]
+        gyroscopic = np.einsum("...kij,...i,...j->...k", self.scaled_mass_derivatives(q), rates, rates)
+        forces = 0.5 * gyroscopic - q @ self.scaled_stiffness - rates @ self.scaled_damping
+        return np.concatenate([rates, forces], axis=-1)
+
+    def scaled_energy(self, x: Array) -> Array:
+        """Ĥ of scaled states, (..., 2r) -> (...); zero at the origin."""
+        q, p = x[..., : self.pairs], x[..., self.pairs :]
+        rates = np.linalg.solve(self.scaled_mass(q), p[..., None])[..., 0]
+        energy: Array = 0.5 * np.sum(p * rates, axis=-1) + 0.5 * np.sum(
+            q * (q @ self.scaled_stiffness), axis=-1
+        )
+        return energy
+
+    def energy(self, x: Array) -> Array:
+        """H(x) = H(x) − H(0), (..., 2r) -> (...), in the product of the units of q and p per second."""
+        return self.scaling.energy * self.scaled_energy(x / self.scaling.states(len(self.state_names)))
+
+    def mass_matrix(self, q: Array) -> Array:
+        """M at coordinates q (..., r), shape (..., r, r): p = M q̇ in the units of the states."""
+        _, of_q, of_p, of_rates = self._scales()
+        return self.scaled_mass(q / of_q) * of_p[:, None] / of_rates
+
+    @property
+    def stiffness(self) -> Array:
+        """K (r, r): the restoring force is −K q, in the units of p per second."""
+        _, of_q, _, _ = self._scales()
+        return self.scaled_stiffness * self.scaling.energy / np.outer(of_q, of_q)
+
+    @property
+    def damping(self) -> Array:
+        """C (r, r): the dissipative force is −C q̇, in the units of p per second."""
+        _, of_q, _, of_rates = self._scales()
+        return self.scaled_damping * self.scaling.energy / np.outer(of_q, of_rates)
+
+    def _scales(self) -> tuple[int, Array, Array, Array]:
+        """2r, and the scales of q, p and q̇ (r,)."""
+        count, r = len(self.state_names), self.pairs
+        states = self.scaling.states(count)
+        return count, states[:r], states[r:], self.scaling.rates(count)[:r]
+
+
+@njit(**OPTIONS)
+def springs_and_dampers(stiffness, damping, x, dx):
+    """Add −K q − C q̇ to ṗ; both (r, r) row by row, q̇ taken from `dx` (2r,)."""
+    r = x.size // 2
+    for i in range(r):
+        force = dx[r + i]
+        for j in range(r):
+            force -= stiffness[i * r + j] * x[j] + damping[i * r + j] * dx[j]
+        dx[r + i] = force

@@ -1,0 +1,194 @@
+"""Port-Hamiltonian surrogate whose mass matrix is M = F + L(q) L(q)ᵀ, the entries of L from a network."""
+
+import math
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from flexsurr.simulation.rhs import Array, implements_rhs
+from flexsurr.surrogates.activations import ACTIVATIONS, ActivationFunction, slope, value
+from flexsurr.surrogates.layers import forward, offset
+from flexsurr.surrogates.packed import lower, pack, packed_size, solve_positive_definite, symmetric
+from flexsurr.surrogates.port_hamiltonian import PortHamiltonian, springs_and_dampers
+
+
+@dataclass(frozen=True, eq=False)
+class NetworkPortHamiltonian(PortHamiltonian):
+    """L = Λ + Σ_k R_k σ(w_k · q̂ + b_k), lower triangular; Ĉ and K̂ are products L Lᵀ of constant ones.
+
+    `floor` is the packed F, positive definite and not trained, so that M is positive definite everywhere and
+    H ≥ 0. `parameters`: weights (r, n), biases (n,), R (entries, n), Λ (entries,), the factors of K̂ and Ĉ.
+    """
+
+    floor: Array
+    hidden: tuple[int, ...]
+    activation: str
+
+    def __post_init__(self) -> None:
+        if len(self.hidden) != 1 or self.hidden[0] < 1:
+            raise ValueError(f"a port-Hamiltonian network takes one hidden layer, not {self.hidden}")
+        if self.activation not in ACTIVATIONS:
+            raise ValueError(f"activation {self.activation!r} is not one of {', '.join(ACTIVATIONS)}")
+        if self.floor.shape != (self.packed_size,):
+            raise ValueError(f"the floor of M has {self.packed_size} entries, not shape {self.floor.shape}")
+        if np.min(np.linalg.eigvalsh(symmetric(self.floor, self.pairs))) <= 0.0:
+            raise ValueError("the floor of M must be positive definite")
+        super().__post_init__()
+
+    @classmethod
+    def shapes(cls, pairs: int, neurons: int) -> list[tuple[int, ...]]:
+        """Shapes of the arrays in `parameters`, in their order."""
+        entries = packed_size(pairs)
+        return [(pairs, neurons), (neurons,), (entries, neurons), (entries,), (entries,), (entries,)]
+
+    @property
+    def parameter_count(self) -> int:
+        """Weights, biases and constant entries."""
+        return sum(map(math.prod, self.shapes(self.pairs, self.hidden[0])))
+
+    @property
+    def sigma(self) -> ActivationFunction:
+        """The activation function."""
+        return ACTIVATIONS[self.activation]
+
+    def arrays(self) -> list[Array]:
+        """Views of the parameters in their shapes."""
+        shapes = self.shapes(self.pairs, self.hidden[0])
+        pieces = np.split(self.parameters, np.cumsum([math.prod(shape) for shape in shapes[:-1]]))
+        return [piece.reshape(shape) for piece, shape in zip(pieces, shapes, strict=True)]
+
+    @property
+    def scaled_stiffness(self) -> Array:
+        """K̂ (r, r)."""
+        factor = lower(self.arrays()[4], self.pairs)
+        return factor @ factor.T
+
+    @property
+    def scaled_damping(self) -> Array:
+        """Ĉ (r, r)."""
+        factor = lower(self.arrays()[5], self.pairs)
+        return factor @ factor.T
+
+    def _factor(self, q: Array) -> tuple[Array, Array]:
+        """L (..., r, r) and its derivatives by q̂_k (..., r, r, r), k first."""
+        weights, biases, readout, constant, *_ = self.arrays()
+        z = q @ weights + biases
+        factor = constant + self.sigma.value(z) @ readout.T
+        derivatives = np.einsum("jk,...k,ek->...je", weights, self.sigma.slope(z), readout)
+        return lower(factor, self.pairs), lower(derivatives, self.pairs)
+
+    def scaled_mass(self, q: Array) -> Array:
+        """M̂ at scaled coordinates, (..., r) -> (..., r, r)."""
+        factor, _ = self._factor(q)
+        mass: Array = symmetric(self.floor, self.pairs) + factor @ np.swapaxes(factor, -1, -2)
+        return mass
+
+    def scaled_mass_derivatives(self, q: Array) -> Array:
+        """∂M̂/∂q̂_k, (..., r) -> (..., r, r, r) with k first."""
+        factor, derivatives = self._factor(q)
+        half = derivatives @ np.swapaxes(factor, -1, -2)[..., None, :, :]
+        gradient: Array = half + np.swapaxes(half, -1, -2)
+        return gradient
+
+    def kernel(self) -> tuple[NamedTuple, int]:
+        """One sweep through the neurons forwards and one back, and a small system."""
+        _, of_q, of_p, of_rates = self._scales()
+        weights, biases, readout, constant, *_ = self.arrays()
+        # M = S (F + L Lᵀ) S with S = √(s_p / s_q̇), which a canonical scaling makes one number for each pair
+        rows, _ = np.tril_indices(self.pairs)
+        roots = np.sqrt(of_p / of_rates)
+        layer = np.concatenate([(weights / of_q[:, None]).ravel(), biases])
+        kernel = NetworkPortHamiltonianKernel(
+            self.sigma.tag,
+            layer,
+            (readout * roots[rows][:, None]).ravel(),
+            constant * roots[rows],
+            pack(symmetric(self.floor, self.pairs) * np.outer(roots, roots)),
+            np.ascontiguousarray(self.stiffness).ravel(),
+            np.ascontiguousarray(self.damping).ravel(),
+        )
+        return kernel, 4 * self.hidden[0] + 2 * self.packed_size + 3 * self.pairs
+
+    def settings(self) -> dict[str, Any]:
+        """Hidden layer and activation; the floor is saved as an array."""
+        return {"hidden": list(self.hidden), "activation": self.activation}
+
+
+class NetworkPortHamiltonianKernel(NamedTuple):
+    """`layer`: weights (r, n) and biases (n,); `readout` (entries, n); the rest packed or (r, r)."""
+
+    activation: NamedTuple
+    layer: Array
+    readout: Array
+    constant: Array
+    floor: Array
+    stiffness: Array
+    damping: Array
+
+
+@implements_rhs(NetworkPortHamiltonianKernel, inline=False)
+def _network_port_hamiltonian(kernel, t, x, dx, work):
+    activation, layer, readout, constant, floor, stiffness, damping = kernel
+    r = offset(x.size // 2)
+    entries = offset(constant.size)
+    n = offset(readout.size // constant.size)
+    # work: q, then σ's arguments (later slopes), values, adjoints; L, M; q̇ and Lᵀ q̇
+    z = r
+    values = z + n
+    adjoint = values + n
+    factor = adjoint + n
+    matrix = factor + entries
+    rates = matrix + entries
+    turned = rates + r
+    for j in range(r):
+        work[j] = x[j]
+    forward(layer, offset(0), r, n, work, offset(0), z)
+    for k in range(n):
+        work[values + k] = value(activation, work[z + k])
+    for k in range(n):
+        work[z + k] = slope(activation, work[z + k])
+    for e in range(entries):
+        total = constant[e]
+        row = e * n
+        for k in range(n):
+            total += readout[row + k] * work[values + k]
+        work[factor + e] = total
+    e = offset(0)
+    for i in range(r):
+        row = factor + i * (i + offset(1)) // offset(2)
+        for j in range(i + offset(1)):
+            other = factor + j * (j + offset(1)) // offset(2)
+            total = floor[e]
+            for k in range(j + offset(1)):
+                total += work[row + k] * work[other + k]
+            work[matrix + e] = total
+            e += offset(1)
+        work[rates + i] = x[r + i]
+    solve_positive_definite(work, np.int64(matrix), np.int64(rates), np.int64(r))
+    for i in range(r):
+        dx[i] = work[rates + i]
+        work[turned + i] = 0.0
+    e = factor
+    for i in range(r):
+        for j in range(i + offset(1)):
+            work[turned + j] += work[e] * work[rates + i]
+            e += offset(1)
+    # ½ ∂/∂q (q̇ᵀ L Lᵀ q̇) = Σ q̇_i (Lᵀ q̇)_j ∂L_ij/∂q
+    for k in range(n):
+        work[adjoint + k] = 0.0
+    e = offset(0)
+    for i in range(r):
+        for j in range(i + offset(1)):
+            weight = work[rates + i] * work[turned + j]
+            row = e * n
+            for k in range(n):
+                work[adjoint + k] += weight * readout[row + k]
+            e += offset(1)
+    for j in range(r):
+        total = 0.0
+        row = j * n
+        for k in range(n):
+            total += layer[row + k] * work[z + k] * work[adjoint + k]
+        dx[r + j] = total
+    springs_and_dampers(stiffness, damping, x, dx)

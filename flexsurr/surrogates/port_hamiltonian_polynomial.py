@@ -1,0 +1,180 @@
+"""Port-Hamiltonian surrogate with a polynomial mass matrix: linear in its parameters but for damping."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexsurr.simulation.rhs import Array, implements_rhs
+from flexsurr.surrogates.layers import offset
+from flexsurr.surrogates.monomials import Exponents, differentiate, evaluate_monomials, factors
+from flexsurr.surrogates.packed import lower, solve_positive_definite, symmetric
+from flexsurr.surrogates.port_hamiltonian import PortHamiltonian, springs_and_dampers
+
+
+@dataclass(frozen=True, eq=False)
+class PolynomialPortHamiltonian(PortHamiltonian):
+    """M̂(q̂) = Σ_k A_k φ_k(q̂) with monomials φ of `exponents` (count, r), the constant first.
+
+    `parameters` holds the packed entries of all A, entry by entry, then K̂, then the factor L of Ĉ = L Lᵀ.
+    Nothing keeps such a matrix positive definite far from where it was fitted: there the field is not a
+    number, and a simulation that gets there ends.
+    """
+
+    exponents: Exponents
+
+    def __post_init__(self) -> None:
+        shape = self.exponents.shape
+        if len(shape) != 2 or shape[1] != self.pairs or self.exponents.min(initial=0) < 0:
+            raise ValueError(
+                f"exponents must be whole numbers ≥ 0, a column for each coordinate, not {shape}"
+            )
+        factors(self.exponents)
+        super().__post_init__()
+
+    @property
+    def parameter_count(self) -> int:
+        """Coefficients of every entry of M, and the entries of K and of the factor of C."""
+        return self.packed_size * (len(self.exponents) + 2)
+
+    @property
+    def degree(self) -> int:
+        """Highest total degree."""
+        return int(self.exponents.sum(axis=1).max())
+
+    @cached_property
+    def _coefficients(self) -> Array:
+        """(entry of M, monomial)."""
+        return self.parameters[: -2 * self.packed_size].reshape(self.packed_size, -1)
+
+    @property
+    def scaled_stiffness(self) -> Array:
+        """K̂ (r, r)."""
+        return symmetric(self.parameters[-2 * self.packed_size : -self.packed_size], self.pairs)
+
+    @property
+    def scaled_damping(self) -> Array:
+        """Ĉ (r, r)."""
+        factor = lower(self.parameters[-self.packed_size :], self.pairs)
+        return factor @ factor.T
+
+    def scaled_mass(self, q: Array) -> Array:
+        """M̂ at scaled coordinates, (..., r) -> (..., r, r)."""
+        return symmetric(evaluate_monomials(self.exponents, q) @ self._coefficients.T, self.pairs)
+
+    @cached_property
+    def _derivative(self) -> tuple[Exponents, Array]:
+        """Monomials and coefficients (r, entry, monomial) of ∂M̂/∂q̂."""
+        lowered, tensor = differentiate(self.exponents)
+        return lowered, np.einsum("kmi,ei->kem", tensor, self._coefficients)
+
+    def scaled_mass_derivatives(self, q: Array) -> Array:
+        """∂M̂/∂q̂_k, (..., r) -> (..., r, r, r) with k first."""
+        lowered, coefficients = self._derivative
+        monomials = evaluate_monomials(lowered, q)
+        return symmetric(np.einsum("kem,...m->...ke", coefficients, monomials), self.pairs)
+
+    def kernel(self) -> tuple[NamedTuple, int]:
+        """Monomials as products, their adjoints for the gyroscopic term, and a small system."""
+        _, of_q, of_p, of_rates = self._scales()
+        rows, columns = np.tril_indices(self.pairs)
+        unscaled = self._coefficients * (of_p[rows] / of_rates[columns])[:, None]
+        parents, of_factors = factors(self.exponents)
+        kernel = PolynomialPortHamiltonianKernel(
+            1.0 / of_q,
+            parents.astype(np.uint64),
+            of_factors.astype(np.uint64),
+            np.ascontiguousarray(unscaled).ravel(),
+            np.ascontiguousarray(self.stiffness).ravel(),
+            np.ascontiguousarray(self.damping).ravel(),
+        )
+        work_size = (
+            2 * (self.pairs + self.packed_size) + 2 * len(self.exponents) + self.packed_size + self.pairs
+        )
+        return kernel, work_size
+
+    def settings(self) -> dict[str, Any]:
+        """Nothing: the exponents are saved as an array."""
+        return {}
+
+
+class PolynomialPortHamiltonianKernel(NamedTuple):
+    """Monomials of q times `inverse_q` (r,): number k + 1 is number parents[k] times factor factors[k].
+
+    Factors are the coordinates, then their packed products. `mass` holds the coefficients of the packed M,
+    entry by entry; `stiffness` and `damping` are (r, r) row by row.
+    """
+
+    inverse_q: Array
+    parents: NDArray[np.uint64]
+    factors: NDArray[np.uint64]
+    mass: Array
+    stiffness: Array
+    damping: Array
+
+
+@implements_rhs(PolynomialPortHamiltonianKernel, inline=False)
+def _polynomial_port_hamiltonian(kernel, t, x, dx, work):
+    inverse_q, parents, of_factors, mass, stiffness, damping = kernel
+    r = offset(inverse_q.size)
+    entries = r * (r + offset(1)) // offset(2)
+    count = offset(parents.size + 1)
+    # work: factors and their adjoints, monomials and theirs, the packed M, the rates
+    slopes = r + entries
+    phi = slopes + r + entries
+    adjoint = phi + count
+    matrix = adjoint + count
+    rates = matrix + entries
+    place = r
+    for i in range(r):
+        work[i] = x[i] * inverse_q[i]
+        for j in range(i + offset(1)):
+            work[place] = work[i] * work[j]
+            place += offset(1)
+    work[phi] = 1.0
+    for k in range(count - offset(1)):
+        work[phi + k + offset(1)] = work[phi + parents[k]] * work[of_factors[k]]
+    for e in range(entries):
+        total = 0.0
+        row = e * count
+        for k in range(count):
+            total += mass[row + k] * work[phi + k]
+        work[matrix + e] = total
+    for i in range(r):
+        work[rates + i] = x[r + i]
+    solve_positive_definite(work, np.int64(matrix), np.int64(rates), np.int64(r))
+    for i in range(r):
+        dx[i] = work[rates + i]
+    # the adjoint of ½ q̇ᵀ M q̇: by the monomials, then by the factors, then by q
+    for k in range(count):
+        work[adjoint + k] = 0.0
+    e = offset(0)
+    for i in range(r):
+        for j in range(i + offset(1)):
+            weight = work[rates + i] * work[rates + j]
+            if i == j:
+                weight *= 0.5
+            row = e * count
+            for k in range(count):
+                work[adjoint + k] += weight * mass[row + k]
+            e += offset(1)
+    for k in range(slopes):
+        work[slopes + k] = 0.0
+    for back in range(count - offset(1)):
+        k = count - offset(2) - back
+        a = work[adjoint + k + offset(1)]
+        parent = parents[k]
+        factor = of_factors[k]
+        work[adjoint + parent] += a * work[factor]
+        work[slopes + factor] += a * work[phi + parent]
+    place = slopes + r
+    for i in range(r):
+        for j in range(i + offset(1)):
+            work[slopes + i] += work[place] * work[j]
+            work[slopes + j] += work[place] * work[i]
+            place += offset(1)
+    for i in range(r):
+        dx[r + i] = work[slopes + i] * inverse_q[i]
+    springs_and_dampers(stiffness, damping, x, dx)

@@ -1,0 +1,140 @@
+"""Polynomial port-Hamiltonian surrogates by linear least squares of inverse dynamics."""
+
+import tracemalloc
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from flexsurr.config.sweep import Trial
+from flexsurr.surrogates import PairScaling, PolynomialPortHamiltonian
+from flexsurr.surrogates.monomials import monomials_to_degree
+from flexsurr.surrogates.packed import pack
+from flexsurr.training import fit, nmse, split_dataset
+from flexsurr.training.inverse_dynamics import (
+    InverseDynamics,
+    channel_spread,
+    fit_port_hamiltonian,
+    stream_port_hamiltonian,
+)
+
+R = 2
+NAMES = tuple(f"{kind}_{k}" for kind in ("eta", "p") for k in range(R))
+
+
+def truth_of(seed, degree=4, even=True, damped=True):
+    """A random mechanical system of two coordinates with a polynomial mass matrix."""
+    generator = np.random.default_rng(seed)
+    exponents = np.concatenate([np.zeros((1, R), dtype=np.int64), monomials_to_degree(R, degree)])
+    exponents = exponents[exponents.sum(axis=1) % 2 == 0] if even else exponents
+    mass = 0.03 * generator.normal(size=(3, len(exponents)))
+    mass[:, 0] += pack(np.array([[1.0, 0.0], [0.3, 0.8]]))
+    springs = generator.normal(size=(R, R))
+    dampers = np.array([0.3, -0.2, 0.5]) if damped else np.zeros(3)
+    parameters = np.concatenate([mass.ravel(), pack(springs @ springs.T + np.eye(R)), dampers])
+    scaling = PairScaling(q=(0.3, 2.0), action=1.5, energy=60.0)
+    return PolynomialPortHamiltonian(parameters, scaling, NAMES, ("1",) * 4, exponents)
+
+
+def sampled(truth, samples=400, seed=0):
+    """Random states and the field there; a fifth of them validate."""
+    x = np.random.default_rng(seed).uniform(-1.0, 1.0, (samples, 4)) * truth.scaling.states(4)
+    return split_dataset(
+        np.arange(samples) % 5,
+        x,
+        truth.derivative(0.0, x),
+        validation=[0],
+        state_names=NAMES,
+        state_units=("1",) * 4,
+    )
+
+
+@given(seed=st.integers(0, 2**32 - 1), even=st.booleans())
+@settings(max_examples=10)
+def test_mass_springs_and_dampers_are_found_to_rounding(seed, even):
+    truth = truth_of(seed, even=even)
+    dataset = sampled(truth)
+    found = fit_port_hamiltonian(dataset, 4)
+    assert np.array_equal(found.exponents, truth.exponents)
+    q = dataset.x_validation[:, :R]
+    for name in ("stiffness", "damping"):
+        expected = getattr(truth, name)
+        np.testing.assert_allclose(getattr(found, name), expected, atol=1e-10 * np.max(np.abs(expected)))
+    expected = truth.mass_matrix(q)
+    np.testing.assert_allclose(
+        found.mass_matrix(q), expected, rtol=1e-9, atol=1e-10 * np.max(np.abs(expected))
+    )
+    assert nmse(found.derivative(0.0, dataset.x_validation), dataset.dx_validation) < 1e-20
+
+
+def test_odd_powers_are_left_out_where_there_are_none():
+    assert not np.any(fit_port_hamiltonian(sampled(truth_of(0)), 4).exponents.sum(axis=1) % 2)
+    assert np.any(fit_port_hamiltonian(sampled(truth_of(0, even=False)), 4).exponents.sum(axis=1) % 2)
+
+
+def test_without_damping_none_is_found():
+    found = fit_port_hamiltonian(sampled(truth_of(1, damped=False)), 4)
+    assert np.max(np.abs(found.scaled_damping)) < 1e-12
+
+
+def test_fed_in_pieces_it_is_the_same(monkeypatch):
+    truth = truth_of(2)
+    dataset = sampled(truth)
+    expected = fit_port_hamiltonian(dataset, 4)
+    monkeypatch.setattr("flexsurr.training.inverse_dynamics.CHUNK", 9_000)
+    blocks = zip(np.array_split(dataset.x_train, 7), np.array_split(dataset.dx_train, 7), strict=True)
+    spread = channel_spread(expected.scaling, dataset.x_train, dataset.dx_train)
+    found = stream_port_hamiltonian(blocks, 4, expected.scaling, spread, NAMES, ("1",) * 4)
+    np.testing.assert_allclose(found.parameters, expected.parameters, atol=1e-11)
+
+
+def test_memory_does_not_grow_with_the_samples():
+    """Twenty blocks take what two take: one block and the triangle."""
+    truth = truth_of(3)
+    scaling, spread = truth.scaling, np.ones(4)
+
+    def peak(count):
+        def blocks():
+            for seed in range(count):
+                x = np.random.default_rng(seed).uniform(-1.0, 1.0, (300, 4)) * scaling.states(4)
+                yield x, truth.derivative(0.0, x)
+
+        tracemalloc.start()
+        stream_port_hamiltonian(blocks(), 4, scaling, spread, NAMES, ("1",) * 4)
+        _, most = tracemalloc.get_traced_memory()
+        tracemalloc.stop()
+        return most
+
+    assert peak(20) < 1.2 * peak(2)
+
+
+def test_a_mass_matrix_that_is_none_is_a_failure_with_a_reason(tmp_path):
+    """A field whose momentum turns against its velocity: the best M is negative."""
+    dataset = sampled(truth_of(4))
+    turned = replace(dataset, dx_train=dataset.dx_train * [-1, -1, 1, 1])
+    trial = Trial(architecture="port_hamiltonian", degree=2, optimiser="least_squares")
+    result = fit(trial, turned, tmp_path)
+    assert result.status == "failed"
+    assert "of degree 2 is not positive definite at q = (" in result.reason
+
+
+def test_a_fit_says_how_well_each_state_is_met(tmp_path):
+    dataset = sampled(truth_of(5))
+    trial = Trial(architecture="port_hamiltonian", degree=2, optimiser="least_squares")
+    result = fit(trial, dataset, tmp_path)
+    assert (result.status, result.epochs, result.parameters) == ("finished", 1, 3 * (4 + 2))
+    assert len(result.validation_nmse_per_state) == 4
+    assert result.validation_nmse == pytest.approx(np.mean(result.validation_nmse_per_state))
+    error = result.surrogate.derivative(0.0, dataset.x_validation) - dataset.dx_validation
+    expected = np.mean(error**2, axis=0) / np.var(dataset.dx_validation, axis=0)
+    np.testing.assert_allclose(result.validation_nmse_per_state, expected)
+
+
+def test_momenta_that_do_not_vary_are_refused():
+    dataset = sampled(truth_of(6))
+    still = replace(dataset, x_train=dataset.x_train * [1, 1, 1, 0])
+    scaling = InverseDynamics(2, truth_of(6).scaling, np.ones(4)).scaling
+    with pytest.raises(ValueError, match="must vary"):
+        channel_spread(scaling, still.x_train, still.dx_train)
