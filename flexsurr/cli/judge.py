@@ -2,6 +2,7 @@
 
 import json
 import logging
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -10,19 +11,24 @@ from flexsurr.cli.command import Job, command
 from flexsurr.config.part import part_of
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Study
-from flexsurr.evaluation import long_response_errors
-from flexsurr.storage import write_json
+from flexsurr.evaluation import held_out_errors, long_response_errors
+from flexsurr.storage import read_manifest, write_json
 from flexsurr.surrogates import load
+from flexsurr.training import Dataset, load_dataset
 
 log = logging.getLogger(__name__)
 
 
-def main(job: Job, runs: Path) -> None:
-    """Write metrics.json of each of the job's runs, found below `runs`."""
+def main(job: Job, runs: Path, manifests: list[Path]) -> None:
+    """Write metrics.json of each of the job's runs, found below `runs`.
+
+    `manifests` holds one dataset for each variant, on whose held-out trajectories all fields are judged.
+    """
+    datasets = {read_manifest(path).variant: load_dataset(path) for path in manifests}
     study = part_of(Study, job["part"])
     basis = reduce(Structure.model_validate(job["structure"]), study.reduction)
     for key in job["runs"]:
-        metrics = _judge(study, basis, runs / key)
+        metrics = _judge(study, basis, datasets, runs / key)
         write_json(runs / key / "metrics.json", metrics)
         log.info(
             "%s: %s, validation nmse %s, long responses %s %%",
@@ -33,17 +39,20 @@ def main(job: Job, runs: Path) -> None:
         )
 
 
-def _judge(study: Study, basis: ModalBasis, folder: Path) -> dict[str, Any]:
-    """What training says of the run and, unless it failed, what its long responses say."""
+def _judge(study: Study, basis: ModalBasis, datasets: Mapping[str, Dataset], folder: Path) -> dict[str, Any]:
+    """What training says of the run and, unless it failed, what its field and its long responses say."""
     fit: dict[str, Any] = json.loads((folder / "fit.json").read_text(encoding="utf-8"))
+    fit["normalisation"] = study.reduction.normalisation
     if fit["status"] != "finished":
         return fit
-    return fit | long_response_errors(study, basis, fit["variant"], load(folder / "weights.npz"))
+    surrogate = load(folder / "weights.npz")
+    held_out = held_out_errors(surrogate, datasets[fit["variant"]])
+    return fit | held_out | long_response_errors(study, basis, fit["variant"], surrogate)
 
 
 if __name__ == "__main__":
     command(
         main,
-        {"runs": "the folder of all runs"},
+        {"runs": "the folder of all runs", "manifests": "one dataset of each variant …"},
         expected=(EquilibriumNotFound, ArithmeticError),
     )

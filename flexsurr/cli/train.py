@@ -90,14 +90,18 @@ def _figures(job: Job, trial: Trial, result: Fit, dataset_sha256: str) -> dict[s
         "run_id": job["run_id"],
         "study": job["study"],
         "variant": job["variant"],
-        # the same for all seeds, by which runs are gathered
-        "configuration": run_id(trial.model_copy(update={"seed": 0}), job["study"], job["variant"]),
+# the same for all seeds, by which runs are gathered
+        "configuration": run_id(
+            trial.model_copy(update={"seed": 0}), job["study"], job["variant"], job["dataset"]
+        ),
+        "dataset": job["dataset"],
         "status": result.status,
         "reason": result.reason,
         "architecture": trial.architecture,
         "hidden": "x".join(str(width) for width in trial.hidden),
         "activation": trial.activation,
         "degree": trial.degree,
+        "scaling": job["trial"].get("scaling", "canonical"),
         "optimiser": trial.optimiser,
         "seed": trial.seed,
         "epochs": result.epochs,

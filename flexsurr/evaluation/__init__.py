@@ -11,12 +11,16 @@ One function per file of results/evaluation/<study>/:
 | energy-<variant>.parquet | `energy_table` |
 | cost-<variant>-<response>.parquet | `cost_table` |
 
-and `long_response_errors`, by which training ranks its runs. `surrogates` is always a mapping from the
-name of an architecture to its fitted surrogate.
+and `long_response_errors`, by which training ranks its runs, `held_out_errors` of their fields,
+`energy_balance`, and `dissipative_asymmetry`, how far a field is from any D-HNN's. `surrogates` is
+always a mapping from the name of an architecture to its fitted surrogate.
 """
 
 from flexsurr.evaluation.cost import cost_table
+from flexsurr.evaluation.dissipative_structure import dissipative_asymmetry
 from flexsurr.evaluation.energy import energy_table
+from flexsurr.evaluation.energy_balance import energy_balance
+from flexsurr.evaluation.held_out import held_out_errors
 from flexsurr.evaluation.responses import response_table
 from flexsurr.evaluation.selection import long_response_errors
 from flexsurr.evaluation.statics import natural_frequencies, static_tip
@@ -24,7 +28,10 @@ from flexsurr.evaluation.validation import validation_table
 
 __all__ = [
     "cost_table",
+    "dissipative_asymmetry",
+    "energy_balance",
     "energy_table",
+    "held_out_errors",
     "long_response_errors",
     "natural_frequencies",
     "response_table",

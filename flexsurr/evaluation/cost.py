@@ -67,7 +67,7 @@ def cost_table(
     frame.insert(0, "study", study_name)
     frame.insert(1, "variant", variant)
     frame.insert(2, "response", response)
-    frame = beside(frame)
+    frame = beside(frame, basis.structure.name)
     return frame[[*COST_COLUMNS, *frame.columns.difference(list(COST_COLUMNS), sort=False)]]
 
 

@@ -2,11 +2,16 @@
 
 import pandas as pd
 
-# Wall time of the Hamiltonian network's response over that of the reduced model, mean and spread [%],
-# by model and response. The spread is given as plus or minus one standard deviation where it is known.
-COST_PERCENT: dict[tuple[str, str], tuple[float, float]] = {
-    ("hnn", "free"): (1.29, float("nan")),
-    ("hnn", "forced"): (83.60, float("nan")),
+# Wall time of the network's response over that of the reduced model, mean [%], by name of the structure,
+# model and response.
+COST_PERCENT: dict[str, dict[tuple[str, str], float]] = {
+    "cantilever": {("hnn", "free"): 1.29, ("hnn", "forced"): 83.60},
+    "wing": {
+        ("dissipative_hnn", "free"): 12.38,
+        ("mlp", "free"): 8.99,
+        ("dissipative_hnn", "forced"): 51.91,
+        ("mlp", "forced"): 56.39,
+    },
 }
 
 # Table 3: natural frequencies [rad/s] of the wing, full order and the first of the reduced order.
@@ -22,17 +27,15 @@ FREQUENCIES_RAD_S: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {
 }
 
 
-def beside(costs: pd.DataFrame) -> pd.DataFrame:
-    """`costs` with paper_percent and paper_std_percent, by model and response.
+def beside(costs: pd.DataFrame, structure: str) -> pd.DataFrame:
+    """`costs` with paper_percent by model and response, and paper_std_percent, of which nothing is known.
 
-    The published figure is a torch network against the described reduced model, both with SciPy's
-    Radau; it is repeated on every row of its model, whatever that row's implementation and integrator.
+    The published figure is a torch network against the described reduced model of `structure`, both with
+    SciPy's Radau; it is repeated on every row of its model, whatever that row's implementation and
+    integrator.
     """
-    nothing = (float("nan"), float("nan"))
-    pairs = [
-        COST_PERCENT.get((model, response), nothing)
-        for model, response in zip(costs["model"], costs["response"], strict=True)
-    ]
+    published = COST_PERCENT.get(structure, {})
+    pairs = zip(costs["model"], costs["response"], strict=True)
     return costs.assign(
-        paper_percent=[mean for mean, _ in pairs], paper_std_percent=[spread for _, spread in pairs]
+        paper_percent=[published.get(pair, float("nan")) for pair in pairs], paper_std_percent=float("nan")
     )

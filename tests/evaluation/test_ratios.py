@@ -93,9 +93,10 @@ def test_without_a_common_simulation_there_is_no_ratio():
     assert np.isnan(relative_percent(None, pd.Series({2: 1.0}))[0])
 
 
-def test_the_published_figure_stands_beside_its_own_model_and_response_only():
+def test_the_published_figure_stands_beside_its_own_structure_model_and_response_only():
     costs = pd.DataFrame(
         {"model": ["hnn", "hnn", "mlp", "rom"], "response": ["free", "forced", "free", "free"]}
     )
-    assert beside(costs)["paper_percent"].tolist()[:2] == [1.29, 83.60]
-    assert beside(costs)["paper_percent"].isna().tolist() == [False, False, True, True]
+    assert beside(costs, "cantilever")["paper_percent"].tolist()[:2] == [1.29, 83.60]
+    assert beside(costs, "cantilever")["paper_percent"].isna().tolist() == [False, False, True, True]
+    assert beside(costs, "another")["paper_percent"].isna().all()

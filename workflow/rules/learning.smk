@@ -52,6 +52,10 @@ for study in STUDIES:
             weights=expand(
                 f"{RESULTS}/runs/{{run_id}}/weights.npz", run_id=plan.runs_of(study)
             ),
+            manifests=expand(
+                f"{RESULTS}/datasets/{study}/{{variant}}/manifest.json",
+                variant=plan.variants(study),
+            ),
         output:
             expand(
                 f"{RESULTS}/runs/{{run_id}}/metrics.json", run_id=plan.runs_of(study)
@@ -65,7 +69,8 @@ for study in STUDIES:
         message:
             f"judging the surrogates of {study}"
         shell:
-            "python -m flexsurr.cli.judge --job {params.job:q} --runs {params.runs:q} > {log:q} 2>&1"
+            "python -m flexsurr.cli.judge --job {params.job:q} --runs {params.runs:q}"
+            " --manifests {input.manifests:q} > {log:q} 2>&1"
 
 
 rule select:
