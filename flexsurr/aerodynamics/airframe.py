@@ -60,12 +60,11 @@ class Airframe:
 
 
 class Panels(NamedTuple):
-    """An airframe for compiled code, N panels; vectors in geometry axes.
+    """An airframe for compiled code, N panels; vectors in geometry axes, points from the centre of gravity.
 
-    All points are relative to the centre of gravity.
-
-    `ends` (6, N): both ends of the bound vortices. `control`, `bound` (N, 3): points. `vortex` (N, 3): the bound vortices themselves. `hinge` (N, 6, 3), `shift`, `turn`
-    and `bound_shift` (N, 6, 3): axes of the controls, translation and rotation by the modes.
+    `ends` (6, N): both ends of the bound vortices. `control`, `bound` (N, 3): points. `vortex` (N, 3): the
+    bound vortices themselves. `hinge` (N, 6, 3), `shift`, `turn` and `bound_shift` (N, 6, 3): axes of the
+    controls, translation and rotation by the modes.
     """
 
     ends: Array

@@ -1,4 +1,4 @@
-"""From circulations to the twelve coefficients: Kutta–Joukowski with local velocities, body, parasite drag."""
+"""From circulations to the twelve coefficients: Kutta–Joukowski's forces, the body's, parasite drag."""
 
 from numba import njit
 
@@ -41,7 +41,7 @@ def add_vortex_force(exact, panels, u, i, gamma, vx, vy, vz, y):
 
 @njit(**COMPILED)
 def add_body(exact, panels, u, y):
-    """Add to `y` (12,) the parasite drag, along the onset at the centre of gravity, and the fuselage's moment.
+    """Add to `y` (12,) the parasite drag along the onset at the centre of gravity, and the fuselage's moment.
 
     The fuselage's moment is ρ munk_volume (0, u w, −u v) in body axes: first order in α and β where the
     boundary condition is.

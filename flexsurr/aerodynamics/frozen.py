@@ -18,7 +18,7 @@ from flexsurr.simulation.rhs import Array
 
 
 class FrozenMatrices(NamedTuple):
-    """`inverse` (K, N, N): circulations for unit wash; `induced` (K, 3, N, N): velocities at bound vortices."""
+    """`inverse` (K, N, N): circulations for unit wash; `induced` (K, 3, N, N): velocities they induce."""
 
     inverse: Array
     induced: Array
@@ -46,7 +46,7 @@ def frozen_matrices(panels: Panels, grid: MachGrid) -> FrozenMatrices:
 def frozen(
     airframe: Airframe, grid: MachGrid, boundary_condition: BoundaryCondition = "exact"
 ) -> CompiledMapping:
-    """The lattice of `airframe` with matrices frozen on `grid`, from the 25 features to the 12 coefficients."""
+    """The lattice of `airframe` with matrices frozen on `grid`, from 25 features to 12 coefficients."""
     panels = panels_of(airframe)
     kernel = Frozen(panels, boundary_condition == "exact", grid, frozen_matrices(panels, grid))
     work_size = len(grid.nodes) + 2 * len(airframe.lattice)

@@ -75,9 +75,7 @@ def influence(ends, stretch, points):
 
 
 def stretch_of(mach: float) -> float:
-    """1/β at a Mach number. Raises ValueError from 0.95 on, where Prandtl–Glauert no longer means anything."""
+    """1/β at a Mach number. Raises ValueError from 0.95 on, where Prandtl–Glauert fails."""
     if not 0.0 <= mach < LARGEST_MACH:
         raise ValueError(f"Mach {mach:g}: Prandtl–Glauert's rule holds from 0 to below {LARGEST_MACH}")
     return 1.0 / math.sqrt(1.0 - mach * mach)
-
-

@@ -30,9 +30,7 @@ class MachGrid(NamedTuple):
         return np.sqrt(1.0 - self.nodes * self.nodes)
 
 
-def mach_grid(
-    low: float, high: float, nodes: int = DEFAULT_NODES, points: int = DEFAULT_POINTS
-) -> MachGrid:
+def mach_grid(low: float, high: float, nodes: int = DEFAULT_NODES, points: int = DEFAULT_POINTS) -> MachGrid:
     """Nodes from Mach `low` to `high`, both among them. Raises ValueError where that cannot be."""
     if not low < high or nodes < 2:
         raise ValueError(

@@ -24,6 +24,6 @@ def friction(mach, altitude, length):
 
 @njit(**CACHED)
 def parasite_drag(at_design_point, mach, altitude, chord):
-    """C_D0 at `mach` and `altitude` [m], for the coefficient at the design point and a reference chord [m]."""
+    """C_D0 at `mach` and `altitude` [m], from that at the design point and the reference chord [m]."""
     ratio = friction(mach, altitude, chord) / friction(DESIGN_MACH, DESIGN_ALTITUDE, chord)
     return at_design_point * ratio
