@@ -47,9 +47,9 @@ def airliner_lattice(aircraft: Aircraft, counts: PanelCounts | None = None) -> L
         ),
     ]
     name = "vertical_tail"
-    flap, *_ = flaps.get(name, (None,))
-    tail, axes = panel(surfaces.vertical_tail, name, *counts.vertical_tail, vertical=True, flap=flap)
-    if flap is not None:
+    rudder = flaps[name][0] if name in flaps else None
+    tail, axes = panel(surfaces.vertical_tail, name, *counts.vertical_tail, vertical=True, flap=rudder)
+    if rudder is not None:
         tail.hinge[:, RUDDER] = -axes  # about the upward hinge a positive turn moves the trailing edge right
     lattice = Lattice.joined([*parts, tail])
     turned = lattice.surface == lattice.surfaces.index(controls.trimmed_surface)

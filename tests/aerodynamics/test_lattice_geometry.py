@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from wings import AIRLINER, FEW
+from wings import AIRLINER, CENTRE_OF_GRAVITY, FEW
 
 from flexsurr.aerodynamics.airframe import Airframe, ModalMotion, apparent_mass_difference
 from flexsurr.aerodynamics.airliner_lattice import (
@@ -78,13 +78,11 @@ def test_a_body_of_revolution_between_a_sphere_and_a_needle():
 def test_mistakes_are_named():
     with pytest.raises(ValueError, match="5 parts of the span"):
         airliner_lattice(AIRLINER, PanelCounts(wing=(4, 2)))
+    lattice = airliner_lattice(AIRLINER, FEW)
+    zeros = np.zeros((len(lattice), 3, 7))
+    motion = ModalMotion(zeros[..., :6], zeros[:28], zeros)
     with pytest.raises(ValueError, match=r"rotation has the shape \(28, 3, 7\)"):
-        lattice = airliner_lattice(AIRLINER, FEW)
-        assert len(lattice) == 36
-        zeros = np.zeros((36, 3, 7))
-        Airframe(
-            lattice, ModalMotion(zeros[..., :6], zeros[:28], zeros), Reference(1.0, 1.0, 1.0), (0.0,) * 3
-        )
+        Airframe(lattice, motion, Reference(1.0, 1.0, 1.0), CENTRE_OF_GRAVITY)
     with pytest.raises(ValueError, match=r"Mach 0\.95"):
         mach_grid(0.4, 0.95)
     with pytest.raises(ValueError, match="low < high"):
