@@ -1,10 +1,9 @@
 """The airliner in flight as a model that `simulate` takes: modes, an aerodynamics, and its controls."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from flexsurr.aerodynamics.features import CONTROLS, MODES
 from flexsurr.aerodynamics.standard_atmosphere import GRAVITY, speed_of_sound
@@ -74,7 +73,7 @@ class FlightModel:
         return SCRATCH + self.aerodynamics.work_size + 1
 
     @property
-    def kernel(self) -> NamedTuple:
+    def kernel(self) -> FlexibleAircraft:
         """The constants of the equations of motion."""
         return _kernel(self)
 
@@ -157,5 +156,5 @@ def _kernel(model: FlightModel) -> FlexibleAircraft:
     )
 
 
-def _vector(values: Sequence[float] | Array) -> Array:
+def _vector(values: ArrayLike) -> Array:
     return np.array(values, dtype=np.float64)
