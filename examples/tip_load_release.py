@@ -25,8 +25,10 @@ beam = Structure(
     joints=("out_of_plane",),
     mass_per_length_kg_m=0.3,
     bending_stiffness_out_of_plane_N_m2=1.2,
+    damping_out_of_plane_s=1e-3,
 )
-integrator = Integrator(method="radau_iia_5", rtol=1e-6, atol=1e-9)
+stiff = Integrator(method="radau_iia_5", rtol=1e-6, atol=1e-9)  # for the fast joints of the full model
+smooth = Integrator(method="dop853", rtol=1e-7, atol=1e-9)
 t = np.linspace(0.0, 1.0, 501)
 
 pulled = find_equilibrium(beam, DeadTipForce((0.0, 0.0, 2.0)))
@@ -34,13 +36,14 @@ x, _, z = tip_position(beam, pulled)
 print(f"pulled up by 2 N the tip is at x = {x:.4f} m, z = {z:.4f} m")
 
 full = full_order(beam, "hamiltonian", "compiled")
-followed = simulate(full, t, np.concatenate([pulled, np.zeros_like(pulled)]), integrator)
-print(f"full order: {followed.steps} steps, energy kept to {np.ptp(full.energy(followed.x)):.1e} J")
+followed = simulate(full, t, np.concatenate([pulled, np.zeros_like(pulled)]), stiff)
+energy = full.energy(followed.x)
+print(f"full order: {followed.steps} steps; {100 * energy[-1] / energy[0]:.0f} % of the energy left after 1 s")
 
 for modes in (1, 2, 3):
     basis = reduce(beam, Reduction(modes=modes, normalisation="mass"))
     model = reduced_order(basis, "hamiltonian", "compiled")
     eta = np.linalg.solve(basis.stiffness, basis.modes.T @ stiffness_matrix(beam) @ pulled)
-    response = simulate(model, t, np.concatenate([eta, np.zeros(modes)]), integrator)
+    response = simulate(model, t, np.concatenate([eta, np.zeros(modes)]), smooth)
     apart = np.linalg.norm(model.tip(response.x) - full.tip(followed.x), axis=1).max()
     print(f"{modes} mode(s): the tips are up to {1e3 * apart:.1f} mm apart within a second")
