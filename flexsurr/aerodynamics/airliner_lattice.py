@@ -1,27 +1,14 @@
 """The lattice of the airliner: wing and tails, with the axes about which its controls turn the normals."""
 
-from typing import Annotated
-
 import numpy as np
-from pydantic import Field
 
 from flexsurr.aerodynamics.features import CONTROLS
 from flexsurr.aerodynamics.lattice import MIRROR, Lattice, panel
 from flexsurr.config.aircraft import Aircraft, ControlSurface, Surface
-from flexsurr.config.schema import Record
+from flexsurr.config.panels import PanelCounts
 from flexsurr.simulation.rhs import Array
 
 INCIDENCE, ELEVATOR_LEFT, ELEVATOR_RIGHT, AILERON_LEFT, AILERON_RIGHT, RUDDER = range(CONTROLS)
-
-Panels = Annotated[int, Field(ge=2)]
-
-
-class PanelCounts(Record):
-    """Strips along each half (or only) span, and panels along the chord: 360 panels in all by default."""
-
-    wing: tuple[Panels, Panels] = (24, 5)
-    horizontal_tail: tuple[Panels, Panels] = (10, 4)
-    vertical_tail: tuple[Panels, Panels] = (10, 4)
 
 
 def airliner_lattice(aircraft: Aircraft, counts: PanelCounts | None = None) -> Lattice:

@@ -10,11 +10,11 @@ import numpy as np
 from numba import njit
 
 from flexsurr.aerodynamics.lattice import Lattice
+from flexsurr.config.feature_limits import LARGEST_MACH
 from flexsurr.simulation.rhs import FLOATING_POINT, Array
 
 INLINED = {"fastmath": FLOATING_POINT, "error_model": "numpy", "_nrt": False}
 
-LARGEST_MACH = 0.95
 # Relative; on the line of the bound vortex itself its own part is zero.
 _ON_THE_LINE = 1e-12
 

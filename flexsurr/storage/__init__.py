@@ -13,21 +13,33 @@ from flexsurr.storage.manifest import (
     write_manifest,
 )
 from flexsurr.storage.parquet import Shard, ShardMetadata, read_shard, write_shard
+from flexsurr.storage.samples import (
+    SampleMetadata,
+    Samples,
+    read_all_samples,
+    read_samples,
+    write_samples,
+)
 
 __all__ = [
     "Manifest",
+    "SampleMetadata",
+    "Samples",
     "Scales",
     "Shard",
     "ShardEntry",
     "ShardMetadata",
     "StorageError",
     "build_manifest",
+    "read_all_samples",
     "read_manifest",
+    "read_samples",
     "read_shard",
     "read_shards",
     "replacing",
     "split_trajectories",
     "write_json",
     "write_manifest",
+    "write_samples",
     "write_shard",
 ]

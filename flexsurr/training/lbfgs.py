@@ -1,21 +1,33 @@
 """L-BFGS over all samples in double precision: torch's, with the closed-form gradient."""
 
 import math
+from typing import Protocol
 
 import numpy as np
 import torch
 
 from flexsurr.simulation.rhs import Array
-from flexsurr.training.objective import Objective
 
 HISTORY = 50
 LISTS = ("old_dirs", "old_stps", "ro")
 
 
+class Differentiable(Protocol):
+    """What L-BFGS minimises."""
+
+    def loss(self, parameters: Array) -> float:
+        """The loss over all samples."""
+        ...
+
+    def gradient(self, parameters: Array, gradient: Array) -> float:
+        """The same, its gradient written into `gradient`."""
+        ...
+
+
 class LBFGS:
     """One iteration with a strong Wolfe line search is one epoch. Satisfies `Optimiser`."""
 
-    def __init__(self, objective: Objective, parameters: Array) -> None:
+    def __init__(self, objective: Differentiable, parameters: Array) -> None:
         torch.set_num_threads(1)  # a trial is a job among others
         self.parameters = parameters.copy()
         self.finished = ""

@@ -75,27 +75,28 @@ class CoefficientObjective:
         pieces = np.split(parameters, np.cumsum([math.prod(shape) for shape in shapes[:-1]]))
         return [piece.reshape(shape) for piece, shape in zip(pieces, shapes, strict=True)]
 
-    def gradient(self, parameters: Array) -> Array:
-        """The gradient (parameters,) of the loss."""
+    def gradient(self, parameters: Array, gradient: Array) -> float:
+        """The loss, its gradient written into `gradient` (parameters,)."""
         weights, biases, weights_out, biases_out = self.unpacked(parameters)
         sigma = ACTIVATIONS[self.activation]
         z = self.x @ weights + biases
         a = sigma.value(z)
-        pulled = (2.0 * self.weights / len(self.x)) * (a @ weights_out + biases_out - self.y)
+        errors = a @ weights_out + biases_out - self.y
+        pulled = (2.0 * self.weights / len(self.x)) * errors
         back = (pulled @ weights_out.T) * sigma.slope(z)
         parts = (self.x.T @ back, back.sum(axis=0), a.T @ pulled, pulled.sum(axis=0))
-        return np.concatenate([part.ravel() for part in parts])
+        np.concatenate([part.ravel() for part in parts], out=gradient)
+        return float(np.mean(errors**2, axis=0) @ self.weights)
 
     def normal_equations(self, parameters: Array) -> NormalEquations:
         """JᵀJ and Jᵀr; memory is that of the samples' products of pairs and twice that of JᵀJ."""
-        weights, biases, weights_out, biases_out = self.unpacked(parameters)
+        weights, biases, weights_out, _ = self.unpacked(parameters)
         sigma = ACTIVATIONS[self.activation]
         m, k = self.y.shape
         z = self.x @ weights + biases
         slopes = sigma.slope(z)
         a = np.hstack([sigma.value(z), np.ones((m, 1))])
         inputs = self._inputs
-        errors = a[:, :-1] @ weights_out + biases_out - self.y
         mean_weights = self.weights / m
         inner = inputs.shape[1] * self.hidden
         gram = np.empty((parameters.size, parameters.size))
@@ -114,9 +115,9 @@ class CoefficientObjective:
         gram[inner:, :inner] = gram[:inner, inner:].T
         outer = np.einsum("ab,o,op->aobp", a.T @ a, mean_weights, np.eye(k))
         gram[inner:, inner:] = outer.reshape(a.shape[1] * k, -1)
-        return NormalEquations(
-            float(np.mean(errors**2, axis=0) @ self.weights), gram, 0.5 * self.gradient(parameters)
-        )
+        gradient = np.empty_like(parameters)
+        loss = self.gradient(parameters, gradient)
+        return NormalEquations(loss, gram, 0.5 * gradient)
 
 
 def _pair_numbers(count: int) -> NDArray[np.int64]:

@@ -1,0 +1,47 @@
+"""Random features to sample the aerodynamics at, independent of how they are cut into shards."""
+
+from typing import Literal
+
+import numpy as np
+from scipy.stats.qmc import Sobol
+
+from flexsurr.aerodynamics.features import FEATURES
+from flexsurr.config.feature_limits import FeatureLimits
+from flexsurr.simulation.rhs import Array
+
+
+def feature_intervals(limits: FeatureLimits) -> tuple[Array, Array]:
+    """The least and the largest value (25,) of each feature, in the features' own units."""
+    values = [
+        getattr(limits, name) for name in FeatureLimits.model_fields if name not in ("eta", "eta_dot_over_V")
+    ]
+    degrees = [name.endswith("_deg") for name in FeatureLimits.model_fields][: len(values)]
+    pairs = np.array([(limit.low, limit.high) for limit in (*values, *limits.eta, *limits.eta_dot_over_V)])
+    pairs[: len(values)][degrees] = np.radians(pairs[: len(values)][degrees])
+    return np.ascontiguousarray(pairs[:, 0]), np.ascontiguousarray(pairs[:, 1])
+
+
+def draw_features(
+    low: Array,
+    high: Array,
+    *,
+    seed: int,
+    first: int,
+    count: int,
+    sampling: Literal["pseudo_random", "sobol"] = "pseudo_random",
+) -> Array:
+    """Samples `first` to `first + count − 1` (count, 25) of the sequence that `seed` begins.
+
+    pseudo_random: uniform, each sample with a generator of its own. sobol: a scrambled Sobol sequence,
+    which fills the space more evenly; best where the number of all samples is a power of two.
+    """
+    if sampling == "sobol":
+        sequence = Sobol(len(FEATURES), scramble=True, rng=np.random.default_rng(seed))
+        if first:
+            sequence.fast_forward(first)
+        # Sobol's own warning about powers of two looks at one shard, not at the sequence
+        unit = np.concatenate([sequence.random(1) for _ in range(count)])
+    else:
+        generators = (np.random.default_rng([seed, number]) for number in range(first, first + count))
+        unit = np.stack([generator.uniform(size=len(FEATURES)) for generator in generators])
+    return low + (high - low) * unit

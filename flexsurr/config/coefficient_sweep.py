@@ -1,0 +1,97 @@
+"""What is learned of the airliner's aerodynamics, and from how many samples (config/sweeps/airliner.yaml)."""
+
+from pathlib import Path
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, field_validator, model_validator
+
+from flexsurr.config.merging import Source, build
+from flexsurr.config.panels import PanelCounts
+from flexsurr.config.reading import read_yaml
+from flexsurr.config.schema import Record
+from flexsurr.config.structure import Positive
+from flexsurr.config.study import Count
+from flexsurr.config.sweep import Activation
+
+Sampling = Literal["pseudo_random", "sobol"]
+CoefficientModel = Literal["network", "linear", "quadratic"]
+Optimiser = Literal["levenberg_marquardt", "lbfgs"]
+Seed = Annotated[int, Field(ge=0)]
+
+
+class CoefficientTrial(Record):
+    """The resolved parameters of one fit, apart from its samples. Hashed into the run_id.
+
+    linear and quadratic are the baselines, by linear least squares.
+    """
+
+    model: CoefficientModel = "network"
+    sampling: Sampling = "pseudo_random"
+    hidden: Count | None = None
+    activation: Activation | None = None
+    optimiser: Optimiser | None = None
+    epochs: Count | None = None
+    time_limit_s: Positive | None = None
+    seed: Seed = 0
+
+    @model_validator(mode="after")
+    def _fits_the_model(self) -> Self:
+        settings = (self.hidden, self.activation, self.optimiser, self.epochs)
+        if self.model == "network":
+            if None in settings:
+                raise ValueError("a network takes hidden, activation, optimiser and epochs")
+        elif settings != (None,) * 4 or self.time_limit_s is not None:
+            raise ValueError(f"{self.model} is fitted by least squares; it takes sampling alone")
+        return self
+
+
+class CoefficientSpace(Record):
+    """Values to combine, all with all."""
+
+    model: CoefficientModel = "network"
+    sampling: Annotated[tuple[Sampling, ...], Field(min_length=1)] = ("pseudo_random",)
+    hidden: Annotated[tuple[Count, ...], Field(min_length=1)] | None = None
+    activation: Annotated[tuple[Activation, ...], Field(min_length=1)] | None = None
+    optimiser: Annotated[tuple[Optimiser, ...], Field(min_length=1)] | None = None
+    epochs: Annotated[tuple[Count, ...], Field(min_length=1)] | None = None
+    time_limit_s: Annotated[tuple[Positive, ...], Field(min_length=1)] | None = None
+    seed: Annotated[tuple[Seed, ...], Field(min_length=1)] = (0,)
+
+
+class SampleSettings(Record):
+    """How many samples, of which `held_out` are kept to validate on, in how many shards."""
+
+    samples: Count = 4096
+    samples_per_shard: Count = 512
+    held_out: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.2
+    seed: Seed = 2024
+    boundary_condition: Literal["exact", "linear"] = "exact"
+    panels: PanelCounts = PanelCounts()
+
+    @property
+    def shards(self) -> int:
+        """Number of shards; the last may hold fewer samples."""
+        return -(-self.samples // self.samples_per_shard)
+
+
+class CoefficientSweep(Record):
+    """Samples and what is fitted to them."""
+
+    dataset: SampleSettings = SampleSettings()
+    spaces: Annotated[tuple[CoefficientSpace, ...], Field(min_length=1)]
+
+    @field_validator("spaces")
+    @classmethod
+    def _has_a_network(cls, spaces: tuple[CoefficientSpace, ...]) -> tuple[CoefficientSpace, ...]:
+        if all(space.model != "network" for space in spaces):
+            raise ValueError("none of them is of a network; one is needed to fly with")
+        return spaces
+
+
+def load_coefficient_sweep(path: Path, shown: str | None = None) -> CoefficientSweep:
+    """The sweep of the YAML file at `path`, named `shown` in errors.
+
+    Raises ConfigurationError with one line a mistake: file, key, value and what is allowed.
+    """
+    name = shown or str(path)
+    return build(CoefficientSweep, [Source(name, read_yaml(path, name))])

@@ -1,0 +1,73 @@
+"""The intervals that the airliner's training samples are drawn from (config/aircraft/*_limits.yaml)."""
+
+from pathlib import Path
+from typing import Annotated, Self
+
+from pydantic import Field, model_validator
+
+from flexsurr.config.merging import Source, build
+from flexsurr.config.reading import read_yaml
+from flexsurr.config.schema import Record
+
+LARGEST_MACH = 0.95
+HIGHEST_M = 20000.0
+
+
+class FeatureLimit(Record):
+    """From `low` to `high`, and why so far."""
+
+    low: float
+    high: float
+    reason: Annotated[str, Field(min_length=1)]
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Self:
+        if self.low >= self.high:
+            raise ValueError(f"low {self.low:g} is not below high {self.high:g}")
+        return self
+
+
+SixLimits = Annotated[tuple[FeatureLimit, ...], Field(min_length=6, max_length=6)]
+
+
+class FeatureLimits(Record):
+    """A limit for each of the 25 inputs of the aerodynamics, in their order; angles in degrees here."""
+
+    mach: FeatureLimit
+    altitude_m: FeatureLimit
+    alpha_deg: FeatureLimit
+    beta_deg: FeatureLimit
+    p_over_V_rad_m: FeatureLimit
+    q_over_V_rad_m: FeatureLimit
+    r_over_V_rad_m: FeatureLimit
+    i_t_deg: FeatureLimit
+    delta_e_left_deg: FeatureLimit
+    delta_e_right_deg: FeatureLimit
+    delta_a_left_deg: FeatureLimit
+    delta_a_right_deg: FeatureLimit
+    delta_r_deg: FeatureLimit
+    eta: SixLimits
+    eta_dot_over_V: SixLimits
+
+    @model_validator(mode="after")
+    def _means_something(self) -> Self:
+        if not 0.0 < self.mach.low < self.mach.high < LARGEST_MACH:
+            raise ValueError(
+                f"mach: {self.mach.low:g} to {self.mach.high:g} is not allowed; allowed: above 0 and below "
+                f"{LARGEST_MACH}, where Prandtl–Glauert's rule ends"
+            )
+        if not 0.0 <= self.altitude_m.low < self.altitude_m.high <= HIGHEST_M:
+            raise ValueError(
+                f"altitude_m: {self.altitude_m.low:g} to {self.altitude_m.high:g} is not allowed; allowed: "
+                f"0 to {HIGHEST_M:g}, where the standard atmosphere ends"
+            )
+        return self
+
+
+def load_feature_limits(path: Path, shown: str | None = None) -> FeatureLimits:
+    """The limits of the YAML file at `path`, named `shown` in errors.
+
+    Raises ConfigurationError with one line a mistake: file, key, value and what is allowed.
+    """
+    name = shown or str(path)
+    return build(FeatureLimits, [Source(name, read_yaml(path, name))])
