@@ -38,9 +38,8 @@ print(f"pulled up by 2 N the tip is at x = {x:.4f} m, z = {z:.4f} m")
 full = full_order(beam, "hamiltonian", "compiled")
 followed = simulate(full, t, np.concatenate([pulled, np.zeros_like(pulled)]), stiff)
 energy = full.energy(followed.x)
-print(
-    f"full order: {followed.steps} steps; after 1 s {100 * energy[-1] / energy[0]:.0f} % of the energy is left"
-)
+kept = 100 * energy[-1] / energy[0]
+print(f"full order: {followed.steps} steps; after a second {kept:.0f} % of the energy is left")
 
 for modes in (1, 2, 3):
     basis = reduce(beam, Reduction(modes=modes, normalisation="mass"))
