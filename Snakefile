@@ -32,6 +32,7 @@ report: "workflow/report/workflow.rst"
 include: "workflow/rules/plan.smk"
 include: "workflow/rules/data.smk"
 include: "workflow/rules/learning.smk"
+include: "workflow/rules/airliner_data.smk"
 include: "workflow/rules/evaluation.smk"
 include: "workflow/rules/report.smk"
 

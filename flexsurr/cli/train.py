@@ -1,15 +1,12 @@
 """Train one surrogate: a trial of a sweep on the data of one variant."""
 
-import fcntl
 import logging
 import math
-import os
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from flexsurr.cli.alone import alone_in
 from flexsurr.cli.command import Job, command
 from flexsurr.config.sweep import Trial
 from flexsurr.storage import replacing, write_json
@@ -28,24 +25,8 @@ def main(job: Job, manifest: Path, store: Path, folder: Path) -> None:
 
     A trial that diverges ends well, with status "failed", its reason, and the best weights it met.
     """
-    with _alone_in(folder):
+    with alone_in(folder):
         _train(job, manifest, store, folder)
-
-
-@contextmanager
-def _alone_in(folder: Path) -> Iterator[None]:
-    """Keep a second process out: one killed with its Snakemake may still be at work on the same run."""
-    folder.mkdir(parents=True, exist_ok=True)
-    handle = os.open(folder, os.O_RDONLY)
-    try:
-        try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            log.info("waiting for another process that trains this run")
-            fcntl.flock(handle, fcntl.LOCK_EX)
-        yield
-    finally:
-        os.close(handle)
 
 
 def _train(job: Job, manifest: Path, store: Path, folder: Path) -> None:
@@ -90,7 +71,7 @@ def _figures(job: Job, trial: Trial, result: Fit, dataset_sha256: str) -> dict[s
         "run_id": job["run_id"],
         "study": job["study"],
         "variant": job["variant"],
-# the same for all seeds, by which runs are gathered
+        # the same for all seeds, by which runs are gathered
         "configuration": run_id(
             trial.model_copy(update={"seed": 0}), job["study"], job["variant"], job["dataset"]
         ),

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
+from flexsurr.config.airliner import AirlinerFiles
 from flexsurr.config.errors import ConfigurationError
 from flexsurr.config.merging import Source, build, merge
 from flexsurr.config.reading import read_yaml
@@ -38,6 +39,7 @@ class Settings(Record):
     tracking: Tracking = Tracking()
     timing: Timing = Timing()
     overrides: dict[str, dict[str, Any]] = Field(default_factory=dict)
+    airliner: AirlinerFiles = AirlinerFiles()
 
 
 @dataclass(frozen=True)

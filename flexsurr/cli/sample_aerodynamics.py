@@ -1,0 +1,58 @@
+"""Sample one shard of the airliner's aerodynamics: the rebuilt lattice at random features."""
+
+import logging
+from pathlib import Path
+
+from flexsurr.aerodynamics.features import COEFFICIENT_UNITS, COEFFICIENTS, FEATURE_UNITS, FEATURES
+from flexsurr.aerodynamics.sampling import draw_features, feature_intervals
+from flexsurr.aerodynamics.vortex_lattice import rebuilt
+from flexsurr.cli.command import Job, command
+from flexsurr.config.aircraft import Aircraft
+from flexsurr.config.feature_limits import FeatureLimits
+from flexsurr.config.panels import PanelCounts
+from flexsurr.config.part import part_of
+from flexsurr.flight.airliner import flexible_airframe
+from flexsurr.flight.modes import free_modes
+from flexsurr.flight.stick_model import stick_model
+from flexsurr.storage import SampleMetadata, Samples, write_samples
+
+log = logging.getLogger(__name__)
+
+
+def main(job: Job, output: Path) -> None:
+    """Write the samples `first` to `first + count − 1` of the job's sequence."""
+    aircraft = part_of(Aircraft, job["aircraft"])
+    modes = free_modes(stick_model(aircraft), job["elastic_modes"])
+    airframe = flexible_airframe(
+        modes, PanelCounts.model_validate(job["panels"]), tuple(job["aerodynamic_modes"])
+    )
+    low, high = feature_intervals(FeatureLimits.model_validate(job["limits"]))
+    u = draw_features(
+        low,
+        high,
+        seed=job["seed"],
+        first=job["first"],
+        count=job["count"],
+        sampling=job["sampling"],
+    )
+    y = rebuilt(airframe, job["boundary_condition"])(u)
+    metadata = SampleMetadata(
+        study=job["study"],
+        sampling=job["sampling"],
+        seed=job["seed"],
+        configuration=job["configuration"],
+        first=job["first"],
+        count=job["count"],
+        input_names=FEATURES,
+        input_units=FEATURE_UNITS,
+        input_low=tuple(low.tolist()),
+        input_high=tuple(high.tolist()),
+        output_names=COEFFICIENTS,
+        output_units=COEFFICIENT_UNITS,
+    )
+    write_samples(output, Samples(u, y, metadata))
+    log.info("%s: %d samples of %d panels", output, len(u), len(airframe.lattice))
+
+
+if __name__ == "__main__":
+    command(main, {"output": "the shard"})

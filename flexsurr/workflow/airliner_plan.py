@@ -1,0 +1,89 @@
+"""The jobs of the airliner: as `plan`, exactly the values that what each makes depends on."""
+
+import hashlib
+import json
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from flexsurr.config.airliner import STUDY, Airliner, AirlinerFiles, load_airliner
+from flexsurr.config.coefficient_sweep import CoefficientTrial
+from flexsurr.config.errors import ConfigurationError
+from flexsurr.training.coefficient_sweep import coefficient_run_id, expand_coefficients
+
+Job = dict[str, Any]
+
+
+class AirlinerPlan:
+    """Every job of the airliner. Raises ConfigurationError for a sweep whose combinations don't fit."""
+
+    def __init__(self, airliner: Airliner, sweep_file: str) -> None:
+        self.airliner = airliner
+        try:
+            self._trials = expand_coefficients(airliner.sweep.spaces)
+        except ValueError as error:
+            raise ConfigurationError([f"{sweep_file}: {error}"]) from None
+
+    @classmethod
+    def load(cls, root: Path, files: AirlinerFiles) -> "AirlinerPlan":
+        """The plan of `files` below the folder `root`. Raises ConfigurationError with what is wrong."""
+        return cls(load_airliner(root, files), files.sweep)
+
+    @cached_property
+    def runs(self) -> dict[str, CoefficientTrial]:
+        """Trials by their run_id."""
+        hashes = {sampling: self.configuration(sampling) for sampling in ("pseudo_random", "sobol")}
+        return {coefficient_run_id(trial, hashes): trial for trial in self._trials}
+
+    @property
+    def shards(self) -> int:
+        """Number of shards of each set of samples."""
+        return self.airliner.sweep.dataset.shards
+
+    def sample(self, sampling: str, shard: int | str) -> Job:
+        """One shard of samples, by its number."""
+        dataset = self.airliner.sweep.dataset
+        first = int(shard) * dataset.samples_per_shard
+        return {
+            **self._samples(sampling),
+            "study": STUDY,
+            "configuration": self.configuration(sampling),
+            "first": first,
+            "count": min(dataset.samples_per_shard, dataset.samples - first),
+        }
+
+    def configuration(self, sampling: str) -> str:
+        """The hash of every value that samples depend on."""
+        canonical = json.dumps(self._samples(sampling), sort_keys=True)
+        return hashlib.sha256(canonical.encode()).hexdigest()[:16]
+
+    def train(self, run_id: str) -> Job:
+        """One fit."""
+        trial, dataset = self.runs[run_id], self.airliner.sweep.dataset
+        return {
+            "run_id": run_id,
+            "study": STUDY,
+            "trial": trial.model_dump(mode="json"),
+            "configuration": self.configuration(trial.sampling),
+            "samples": dataset.samples,
+            "held_out": dataset.held_out,
+            "seed": dataset.seed,
+        }
+
+    def select(self) -> Job:
+        """The choice among the fits."""
+        return {"study": STUDY, "runs": list(self.runs)}
+
+    def _samples(self, sampling: str) -> Job:
+        dataset, flight = self.airliner.sweep.dataset, self.airliner.flight
+        aircraft = self.airliner.aircraft.model_dump(mode="json", exclude={"structural_damping_ratio"})
+        return {
+            "aircraft": aircraft,
+            "elastic_modes": flight.elastic_modes,
+            "aerodynamic_modes": list(flight.aerodynamic_modes),
+            "limits": self.airliner.limits.model_dump(mode="json"),
+            "panels": dataset.panels.model_dump(mode="json"),
+            "boundary_condition": dataset.boundary_condition,
+            "seed": dataset.seed,
+            "sampling": sampling,
+        }

@@ -1,0 +1,97 @@
+# The airliner: samples of its aerodynamics, and networks that learn them.
+
+from flexsurr.workflow.airliner_plan import AirlinerPlan
+
+try:
+    airliner = AirlinerPlan.load(Path(workflow.basedir), plan.settings.airliner)
+except ConfigurationError as error:
+    raise WorkflowError(str(error)) from None
+
+
+# The general rules of a study would make the same files from trajectories.
+ruleorder: train_coefficients > train
+ruleorder: select_coefficients > select
+
+
+rule sample_aerodynamics:
+    output:
+        f"{RESULTS}/datasets/airliner/{{sampling}}/shard-{{shard}}.parquet",
+    log:
+        f"{RESULTS}/logs/sample_aerodynamics/{{sampling}}-{{shard}}.log",
+    wildcard_constraints:
+        sampling="pseudo_random|sobol",
+    params:
+        job=lambda w: json.dumps(airliner.sample(w.sampling, w.shard), sort_keys=True),
+        code=code("sample_aerodynamics"),
+    message:
+        "sampling the airliner's aerodynamics, {wildcards.sampling}, shard {wildcards.shard}"
+    shell:
+        "python -m flexsurr.cli.sample_aerodynamics --job {params.job:q} --output {output:q}"
+        " > {log:q} 2>&1"
+
+
+rule airliner_tracking:
+    # In the store that is there already: no second process creates one.
+    input:
+        ancient(rules.tracking_store.output[0]),
+    output:
+        f"{RESULTS}/mlflow/airliner.json",
+    log:
+        f"{RESULTS}/logs/airliner_tracking.log",
+    params:
+        job=json.dumps({"uri": plan.settings.tracking.uri, "studies": ["airliner"]}),
+    message:
+        "the airliner's place in the tracking store"
+    shell:
+        "python -m flexsurr.cli.store --job {params.job:q} --output {output:q} > {log:q} 2>&1"
+
+
+rule train_coefficients:
+    # The store is ancient: a new one is no reason to train anew.
+    input:
+        shards=lambda w: expand(
+            f"{RESULTS}/datasets/airliner/{airliner.runs[w.run_id].sampling}/shard-{{shard:04d}}.parquet",
+            shard=range(airliner.shards),
+        ),
+        store=ancient(rules.airliner_tracking.output[0]),
+    output:
+        parameters=f"{RESULTS}/runs/{{run_id}}/parameters.json",
+        metrics=f"{RESULTS}/runs/{{run_id}}/metrics.json",
+        accuracy=f"{RESULTS}/runs/{{run_id}}/accuracy.parquet",
+        errors=f"{RESULTS}/runs/{{run_id}}/errors.parquet",
+    log:
+        f"{RESULTS}/logs/train/{{run_id}}.log",
+    wildcard_constraints:
+        run_id="airliner-.*",
+    params:
+        job=lambda w: json.dumps(airliner.train(w.run_id), sort_keys=True),
+        code=code("train_coefficients"),
+        folder=f"{RESULTS}/runs/{{run_id}}",
+    message:
+        "training {wildcards.run_id}"
+    shell:
+        "python -m flexsurr.cli.train_coefficients --job {params.job:q} --shards {input.shards:q}"
+        " --store {input.store:q} --folder {params.folder:q} > {log:q} 2>&1"
+
+
+rule select_coefficients:
+    input:
+        metrics=expand(f"{RESULTS}/runs/{{run_id}}/metrics.json", run_id=airliner.runs),
+        accuracy=expand(
+            f"{RESULTS}/runs/{{run_id}}/accuracy.parquet", run_id=airliner.runs
+        ),
+        store=ancient(rules.airliner_tracking.output[0]),
+    output:
+        selection=f"{RESULTS}/selected/airliner.json",
+        table=f"{RESULTS}/tables/airliner_accuracy.csv",
+    log:
+        f"{RESULTS}/logs/select/airliner.log",
+    params:
+        job=json.dumps(airliner.select(), sort_keys=True),
+        code=code("select_coefficients"),
+        runs=f"{RESULTS}/runs",
+    message:
+        "choosing the network that the airliner flies with"
+    shell:
+        "python -m flexsurr.cli.select_coefficients --job {params.job:q} --runs {params.runs:q}"
+        " --store {input.store:q} --output {output.selection:q} --table {output.table:q} > {log:q} 2>&1"
