@@ -1,0 +1,111 @@
+"""The network of coefficients: three implementations, one function; files that hold it."""
+
+import numpy as np
+import pytest
+import torch
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from flexsurr.surrogates.coefficient_network import (
+    CoefficientNetwork,
+    load_coefficient_network,
+    save_coefficient_network,
+)
+from flexsurr.surrogates.saved import SurrogateFileError
+
+INPUTS, OUTPUTS = 25, 12
+
+
+def random_network(seed: int, hidden: int = 75, activation: str = "tanh") -> CoefficientNetwork:
+    generator = np.random.default_rng(seed)
+    low, output_low = generator.uniform(-1e4, 1e4, INPUTS), generator.uniform(-3.0, 3.0, OUTPUTS)
+    return CoefficientNetwork(
+        parameters=generator.standard_normal(INPUTS * hidden + hidden + hidden * OUTPUTS + OUTPUTS),
+        hidden=hidden,
+        activation=activation,
+        input_low=low,
+        input_high=low + generator.uniform(0.01, 1e4, INPUTS),
+        output_low=output_low,
+        output_high=output_low + generator.uniform(0.01, 3.0, OUTPUTS),
+        input_names=tuple(f"u{k}" for k in range(INPUTS)),
+        output_names=tuple(f"y{k}" for k in range(OUTPUTS)),
+    )
+
+
+def inputs(network: CoefficientNetwork, seed: int, count: int, beyond: float = 1.0) -> np.ndarray:
+    unit = np.random.default_rng(seed).uniform(-beyond, beyond, (count, INPUTS))
+    middle, half = network.input_low + network.input_high, network.input_high - network.input_low
+    return 0.5 * (middle + half * unit)
+
+
+def in_torch(network: CoefficientNetwork) -> torch.nn.Module:
+    """The same layers as somebody trains them in torch."""
+    hidden, output = (
+        torch.nn.Linear(INPUTS, network.hidden).double(),
+        torch.nn.Linear(network.hidden, OUTPUTS).double(),
+    )
+    weights, biases, weights_out, biases_out = network.arrays()
+    with torch.no_grad():
+        hidden.weight.copy_(torch.tensor(weights.T))
+        hidden.bias.copy_(torch.tensor(biases))
+        output.weight.copy_(torch.tensor(weights_out.T))
+        output.bias.copy_(torch.tensor(biases_out))
+    return torch.nn.Sequential(hidden, torch.nn.Tanh(), output)
+
+
+@settings(max_examples=20)
+@given(seed=st.integers(0, 2**20), beyond=st.sampled_from([0.1, 1.0, 10.0]))
+def test_torch_numpy_and_compiled_code_agree(seed, beyond):
+    network = random_network(seed)
+    u = inputs(network, seed, 20, beyond)
+    scale = network.output_high - network.output_low
+    x = (2.0 * u - network.input_low - network.input_high) / (network.input_high - network.input_low)
+    with torch.no_grad():
+        y = in_torch(network)(torch.tensor(x)).numpy()
+    expected = 0.5 * (network.output_low + network.output_high + scale * y)
+    # sums of 75 terms of the size of the outputs
+    size = 1e-12 * scale
+    assert np.all(np.abs(network(u) - expected) < size)
+    assert np.all(np.abs(network.compiled()(u) - expected) < size)
+
+
+@pytest.mark.parametrize("activation", ["tanh", "atan"])
+def test_saved_and_loaded_it_is_the_same_to_the_bit(tmp_path, activation):
+    network = random_network(1, hidden=7, activation=activation)
+    u = inputs(network, 2, 5)
+    save_coefficient_network(network, tmp_path / "weights.npz")
+    again = load_coefficient_network(tmp_path / "weights.npz")
+    np.testing.assert_array_equal(again(u), network(u))
+    assert (again.input_names, again.activation) == (network.input_names, activation)
+
+
+def test_a_single_sample_or_a_grid_of_them():
+    network = random_network(3, hidden=4)
+    u = inputs(network, 4, 6)
+    np.testing.assert_allclose(network.compiled()(u[0]), network(u)[0], rtol=1e-10, atol=1e-12)
+    assert network.compiled()(u.reshape(2, 3, -1)).shape == (2, 3, OUTPUTS)
+
+
+def test_files_that_hold_no_network_are_named(tmp_path):
+    damaged = tmp_path / "damaged.npz"
+    save_coefficient_network(random_network(1, hidden=3), damaged)
+    damaged.write_bytes(damaged.read_bytes()[:200])
+    with pytest.raises(SurrogateFileError, match=r"damaged\.npz: not a readable"):
+        load_coefficient_network(damaged)
+    foreign = tmp_path / "foreign.npz"
+    np.savez(foreign, parameters=np.zeros(3))
+    with pytest.raises(SurrogateFileError, match=r"foreign\.npz: not a coefficient network"):
+        load_coefficient_network(foreign)
+    with pytest.raises(FileNotFoundError):
+        load_coefficient_network(tmp_path / "none.npz")
+
+
+def test_arrays_that_do_not_fit_are_refused():
+    network = random_network(1, hidden=3)
+    good = {name: getattr(network, name) for name in network.__dataclass_fields__}
+    with pytest.raises(ValueError, match="neurons"):
+        CoefficientNetwork(**{**good, "hidden": 4})
+    with pytest.raises(ValueError, match="low < high"):
+        CoefficientNetwork(**{**good, "input_high": network.input_low})
+    with pytest.raises(ValueError, match="relu"):
+        CoefficientNetwork(**{**good, "activation": "relu"})

@@ -1,0 +1,137 @@
+"""From samples to a network of coefficients and its baselines."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from flexsurr.config.coefficient_sweep import CoefficientSpace, CoefficientTrial
+from flexsurr.storage import SampleMetadata, Samples
+from flexsurr.training import coefficient_fit
+from flexsurr.training.coefficient_accuracy import accuracy, held_out_errors
+from flexsurr.training.coefficient_baselines import fit_coefficient_polynomial
+from flexsurr.training.coefficient_data import coefficient_data
+from flexsurr.training.coefficient_fit import fit_coefficients
+from flexsurr.training.coefficient_sweep import coefficient_run_id, expand_coefficients
+
+LOW, HIGH = np.array([-2.0, 0.0, 100.0]), np.array([1.0, 0.5, 300.0])
+
+
+def quadratic_samples(count: int = 300) -> Samples:
+    u = LOW + (HIGH - LOW) * np.random.default_rng(5).uniform(size=(count, 3))
+    a, b, c = (u / np.array([1.0, 0.1, 100.0])).T
+    y = np.stack([1.0 + a * b - c, a**2 - 0.3 * c * b + 2.0], axis=1)
+    metadata = SampleMetadata(
+        "airliner",
+        "pseudo_random",
+        0,
+        "abc",
+        0,
+        count,
+        ("a", "b", "c"),
+        ("1", "1", "m"),
+        tuple(LOW),
+        tuple(HIGH),
+        ("y1", "y2"),
+        ("1", "1"),
+    )
+    return Samples(u, y, metadata)
+
+
+DATA = coefficient_data(quadratic_samples(), held_out=0.2, seed=1)
+TRIAL = CoefficientTrial(hidden=8, activation="tanh", optimiser="levenberg_marquardt", epochs=30)
+
+
+def test_a_fifth_is_held_out_and_features_are_scaled_to_one():
+    assert DATA.held_out.sum() == 60
+    assert np.abs(DATA.scaled_u).max() <= 1.0
+    training = DATA.scaled_y[~DATA.held_out]
+    np.testing.assert_allclose([training.min(axis=0), training.max(axis=0)], [[-1.0, -1.0], [1.0, 1.0]])
+    again = coefficient_data(quadratic_samples(), held_out=0.2, seed=1)
+    np.testing.assert_array_equal(again.held_out, DATA.held_out)
+    assert again.sha256 == DATA.sha256
+    assert coefficient_data(quadratic_samples(), held_out=0.2, seed=2).sha256 != DATA.sha256
+
+
+def test_a_coefficient_that_does_not_vary_is_named():
+    samples = quadratic_samples()
+    flat = dataclasses.replace(samples, y=np.column_stack([samples.y[:, 0], np.ones(len(samples.y))]))
+    with pytest.raises(ValueError, match="y2 does not vary"):
+        coefficient_data(flat, 0.2, 1)
+
+
+def test_the_quadratic_baseline_is_exact_for_a_quadratic_function():
+    quadratic = accuracy(DATA, fit_coefficient_polynomial(DATA, 2)(DATA.u), "quadratic")
+    linear = accuracy(DATA, fit_coefficient_polynomial(DATA, 1)(DATA.u), "linear")
+    assert quadratic["validation_nmse"].max() < 1e-20
+    assert linear["validation_nmse"].min() > 1e-3
+    assert list(quadratic.columns) == ["output", "train_nmse", "validation_nmse", "validation_r2", "model"]
+
+
+def test_accuracy_is_relative_to_the_variance():
+    predicted = DATA.y + 0.1 * np.std(DATA.y[DATA.held_out], axis=0)
+    table = accuracy(DATA, predicted, "network")
+    np.testing.assert_allclose(table["validation_nmse"], 0.01)
+    np.testing.assert_allclose(table["validation_r2"], 0.99)
+    errors = held_out_errors(DATA, predicted)
+    np.testing.assert_allclose(errors[["error_y1", "error_y2"]], 0.1)
+    assert len(errors) == 60
+
+
+def test_a_network_learns_and_its_losses_are_those_of_the_table(tmp_path):
+    fit = fit_coefficients(TRIAL, DATA, tmp_path)
+    assert fit.status == "finished"
+    assert fit.epochs == 30
+    table = accuracy(DATA, fit.network(DATA.u), "network")
+    assert table["validation_r2"].min() > 0.999
+    assert fit.train_nmse == pytest.approx(table["train_nmse"].mean(), rel=1e-9)
+    assert fit.validation_nmse == pytest.approx(table["validation_nmse"].mean(), rel=1e-9)
+    assert fit.validation_nmse == fit.history["validation_loss"].min()
+
+
+def test_interrupted_and_resumed_it_comes_to_the_same_weights(tmp_path, monkeypatch):
+    whole = fit_coefficients(TRIAL, DATA, tmp_path / "whole")
+    monkeypatch.setattr(coefficient_fit, "CHECKPOINT_EVERY_S", 0.0)
+
+    def interrupt(epoch, *losses):
+        if epoch == 12:
+            raise KeyboardInterrupt
+
+    folder = tmp_path / "resumed"
+    with pytest.raises(KeyboardInterrupt):
+        fit_coefficients(TRIAL, DATA, folder, interrupt)
+    epochs = []
+    resumed = fit_coefficients(TRIAL, DATA, folder, lambda epoch, *losses: epochs.append(epoch))
+    assert epochs[0] == 12  # the eleventh was the last to be kept
+    np.testing.assert_array_equal(resumed.network.parameters, whole.network.parameters)
+    assert list(folder.iterdir()) == []
+
+
+def test_lbfgs_lessens_the_loss_too(tmp_path):
+    trial = TRIAL.model_copy(update={"optimiser": "lbfgs", "epochs": 40})
+    fit = fit_coefficients(trial, DATA, tmp_path)
+    losses = fit.history["train_loss"]
+    assert losses.iloc[-1] < 0.1 * losses.iloc[0]
+
+
+def test_trials_have_names_that_are_their_content():
+    spaces = (
+        CoefficientSpace(model="linear"),
+        CoefficientSpace(
+            hidden=(5, 6),
+            activation=("tanh", "atan"),
+            optimiser=("levenberg_marquardt",),
+            epochs=(3,),
+            sampling=("sobol",),
+        ),
+    )
+    trials = expand_coefficients(spaces)
+    assert [trial.hidden for trial in trials] == [None, 5, 5, 6, 6]
+    hashes = {"pseudo_random": "a", "sobol": "b"}
+    names = {coefficient_run_id(trial, hashes) for trial in trials}
+    assert len(names) == 5
+    assert coefficient_run_id(trials[0], hashes) in names
+    assert coefficient_run_id(trials[0], {**hashes, "pseudo_random": "c"}) not in names
+    assert coefficient_run_id(trials[1], {**hashes, "pseudo_random": "c"}) in names
+    with pytest.raises(ValueError, match=r"number 1 .*takes hidden"):
+        expand_coefficients((CoefficientSpace(hidden=(5,)),))
