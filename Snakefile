@@ -40,5 +40,9 @@ include: "workflow/rules/report.smk"
 rule all:
     default_target: True
     input:
-        expand(f"{RESULTS}/figures/{{study}}/{{name}}.svg", study=STUDIES, name=FIGURES),
+        [
+            f"{RESULTS}/figures/{study}/{name}.svg"
+            for study in STUDIES
+            for name in plan.figures(study)
+        ],
         expand(f"{RESULTS}/tables/{{name}}.csv", name=TABLES),

@@ -23,10 +23,11 @@ def arguments(reads: Sequence[str], job: Job, inputs: Sequence[Path]) -> list[An
 def _read(read: str, job: Job, inputs: Sequence[Path]) -> Any:
     if read == "structure":
         return Structure.model_validate(job["structure"])
-    files = [path for path in inputs if fnmatch(path.stem, read)]
+    stem = "metrics" if read == "relatives" else read
+    files = [path for path in inputs if fnmatch(path.stem, stem)]
     if not files:
         raise FileNotFoundError(f"no file is given that holds {read}")
-    if read == "metrics":
+    if read in ("metrics", "relatives"):
         return pd.DataFrame([json.loads(path.read_text(encoding="utf-8")) for path in files])
     if read == "history":
         frames = [pd.read_parquet(path).assign(run_id=path.parent.name) for path in files]

@@ -11,6 +11,7 @@ from matplotlib.patches import Patch
 
 from flexsurr.report.style import (
     BLACK,
+    LOADED,
     PAGE_IN,
     VARIANTS,
     colour,
@@ -26,8 +27,6 @@ WINDOW_S = 0.6
 
 MARKED_EVERY_S = 0.045
 _MARKERS = ("s", "o", "^", "D", "v", "P")
-
-LOADED = "#F6E7C8"
 
 # What rounding leaves is no error to compare.
 SMALLEST_PERCENT = 1e-9

@@ -1,12 +1,13 @@
-"""The architectures as block diagrams: Figs. 5, 6 and 11 of the study."""
+"""The architectures as block diagrams: Figs. 5, 6, 7 and 11 of the study."""
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from flexsurr.report.diagram import Point, arrow, block, canvas, connect, neuron, path
-from flexsurr.report.style import BLACK, BLUE, COLUMN_IN, GREY, ORANGE, PAGE_IN, VERMILION, styled
+from flexsurr.report.style import BLACK, BLUE, COLUMN_IN, GREY, ORANGE, PAGE_IN, PURPLE, VERMILION, styled
 
 PALE_RED, PALE_BLUE, PALE_ORANGE, PALE_GREY = "#FBEADF", "#E1EEF7", "#FDF3DC", "#F3F3F3"
+PALE_PURPLE = "#F8EAF2"
 
 HIDDEN_DRAWN = (1.55, 1.15, 0.75, 0.2)
 """Heights [in] of the hidden neurons that are drawn; the dots stand between the last two."""
@@ -50,6 +51,40 @@ def figure_06() -> Figure:
     _column_titles(
         ax, 1.78, ((0.55, "state"), (1.5, "hidden layer"), (2.4, "energy"), (4.72, "field (eq. 11)"))
     )
+    return figure
+
+
+@styled
+def figure_07() -> Figure:
+    """The D-HNN, eq. 12: two scalars H and D out, the field by differentiation of both."""
+    figure, ax = canvas(PAGE_IN * 0.82, 1.9)
+    inputs = ((0.55, 1.2), (0.55, 0.6))
+    heads = ((1.35, "H", BLUE, PALE_BLUE), (0.42, "D", PURPLE, PALE_PURPLE))
+    for centre, text in zip(inputs, (r"$\eta$", r"$p$"), strict=True):
+        neuron(ax, centre, text, BLACK, "white")
+    outputs = ((5.15, 1.35), (5.15, 0.42))
+    for middle, name, line, fill in heads:
+        hidden = tuple((1.5, middle + offset) for offset in (0.3, 0.0, -0.3))
+        for centre in hidden:
+            neuron(ax, centre, r"$\sigma$", line, fill, radius=0.11)
+        scalar = (2.3, middle)
+        connect(ax, inputs, hidden, GREY)
+        connect(ax, hidden, (scalar,), GREY)
+        neuron(ax, scalar, f"${name}$", line, fill, radius=0.16)
+        arrow(ax, (scalar[0] + 0.16, middle), (2.75, middle))
+        text = rf"$\partial_\eta {name},\ \partial_p {name}$"
+        block(ax, (3.2, middle), (0.9, 0.4), text, line, PALE_GREY)
+        for x, y in outputs:
+            arrow(ax, (3.65, middle), (x - 0.72, y + 0.06 * (1 if middle > y else -1)), line)
+    texts = (
+        r"$\dot\eta = \partial H/\partial p + \partial D/\partial\eta$",
+        r"$\dot p = -\,\partial H/\partial\eta + \partial D/\partial p$",
+    )
+    for centre, text in zip(outputs, texts, strict=True):
+        block(ax, centre, (1.44, 0.36), text)
+    titles = ((0.55, "state"), (1.5, "hidden layers"), (2.42, "energy,"), (5.15, "field (eq. 12)"))
+    _column_titles(ax, 1.8, titles)
+    _column_titles(ax, 0.08, ((2.35, "dissipation"),))
     return figure
 
 

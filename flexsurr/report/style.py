@@ -47,8 +47,17 @@ NAMES: dict[str, str] = {
     "dissipative_hnn": "D-HNN",
     "port_hamiltonian": "port-Hamiltonian",
 }
-DASHES: dict[str, Any] = {"mlp": (0, (4, 1.5)), "hnn": (0, (2.2, 1.1)), "polynomial": (0, (1, 1))}
+DASHES: dict[str, Any] = {
+    "mlp": (0, (4, 1.5)),
+    "hnn": (0, (2.2, 1.1)),
+    "polynomial": (0, (1, 1)),
+    "dissipative_hnn": (0, (5, 1, 1, 1)),
+    "port_hamiltonian": (0, (2.5, 2.5)),
+}
 """Line styles beside the colours, for those who print in black and white; solid where none is given."""
+
+LOADED = "#F6E7C8"
+"""The background where a load acts."""
 
 VARIANTS: dict[str, str] = {
     "hamiltonian": "gyroscopic term kept",

@@ -17,6 +17,7 @@ from flexsurr.config.part import values_of
 from flexsurr.config.settings import Configuration, ResolvedStudy
 from flexsurr.config.study import DEFAULT, Study, Variant
 from flexsurr.config.sweep import Trial
+from flexsurr.report import FIGURES
 from flexsurr.training.sweep import expand, run_id
 
 Job = dict[str, Any]
@@ -206,6 +207,10 @@ class Plan:
         runs = {"metrics": "metrics.json", "history": "history.parquet"}
         if read == "structure":
             return []
+        if read == "relatives":
+            structure = self.studies[study].structure
+            related = [name for name, other in self.studies.items() if other.structure == structure]
+            return [file for name in related for file in self.files(name, "metrics")]
         if read in runs:
             return [f"runs/{key}/{runs[read]}" for key in self.runs_of(study)]
         variants = self.variants(study)
@@ -217,6 +222,11 @@ class Plan:
         if not found:
             raise ValueError(f"no rule makes {read}")
         return found
+
+    def figures(self, study: str) -> list[str]:
+        """The figures of one study: those that show a structure like its own."""
+        structure = self.studies[study].structure
+        return [name for name, figure in FIGURES.items() if figure.shows(structure)]
 
     def draw(self, study: str, figures: Sequence[str], reads: Sequence[str]) -> Job:
         """Figures that read the same."""

@@ -3,8 +3,9 @@
 from flexsurr.report import FIGURES, TABLES
 
 for study in STUDIES:
-    for reads in dict.fromkeys(figure.reads for figure in FIGURES.values()):
-        same = [name for name, figure in FIGURES.items() if figure.reads == reads]
+    drawn = {name: FIGURES[name].reads for name in plan.figures(study)}
+    for reads in dict.fromkeys(drawn.values()):
+        same = [name for name, read in drawn.items() if read == reads]
 
         rule:
             name:
