@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from flexsurr.simulation.rhs import Array
 from flexsurr.training import Dataset
+from flexsurr.training.losses import nmse_per_state
 
 
 def held_out_errors(surrogate: Any, dataset: Dataset) -> dict[str, Any]:
@@ -15,16 +15,11 @@ def held_out_errors(surrogate: Any, dataset: Dataset) -> dict[str, Any]:
     variance of the target, and held_out_nmse_by_state, the same for each state by its name. One dataset
     for all runs of a study, whatever each was trained on. A figure that has no finite value is None.
     """
-    error = nmse_by_state(surrogate.derivative(0.0, dataset.x_validation), dataset.dx_validation)
+    error = nmse_per_state(surrogate.derivative(0.0, dataset.x_validation), dataset.dx_validation)
     by_state: dict[str, float | None] = dict(
         zip(dataset.state_names, map(_finite, error.tolist()), strict=True)
     )
     return {"held_out_nmse": _finite(float(error.mean())), "held_out_nmse_by_state": by_state}
-
-
-def nmse_by_state(field: Array, target: Array) -> Array:
-    """(d,) mean squared error of `field` (m, d) over the variance of `target` (m, d)."""
-    return np.asarray(np.mean((field - target) ** 2, axis=0) / np.var(target, axis=0))
 
 
 def _finite(value: float) -> float | None:

@@ -36,6 +36,9 @@ ARCHITECTURE_COLUMNS = (
     "wall_s",
     "train_nmse",
     "validation_nmse",
+)
+
+JUDGED = (  # finished runs only
     "held_out_nmse",
     "long_response_error_percent_median",
     "long_response_error_percent_worst",
@@ -59,9 +62,13 @@ def architectures(metrics: pd.DataFrame) -> pd.DataFrame:
 
     train_nmse and validation_nmse are on the run's own dataset; held_out_nmse, and held_out_nmse_<state>,
     on the held-out trajectories of the study's, the same for all. Errors of long free responses in percent
-    of the peak. Figures of runs that failed, and of responses that did not end, are empty.
+    of the peak. Figures of runs that failed, and of responses that did not end, are empty. Raises KeyError
+    naming a column that is missing.
     """
-    frame = metrics.reindex(columns=list(ARCHITECTURE_COLUMNS))
+    missing = [name for name in ARCHITECTURE_COLUMNS if name not in metrics.columns]
+    if missing:
+        raise KeyError(f"columns missing: {', '.join(missing)}")
+    frame = metrics.reindex(columns=[*ARCHITECTURE_COLUMNS, *JUDGED])
     by_state: list[dict[str, float | None]] = [
         row if isinstance(row, dict) else {}
         for row in metrics.get("held_out_nmse_by_state", pd.Series([{}] * len(frame)))

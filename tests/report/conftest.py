@@ -69,6 +69,7 @@ def make_response(response: str, variants: tuple[str, ...] = VARIANTS) -> pd.Dat
                         "t_s": shown,
                         "tip_x_m": 1.0,
                         "tip_z_m": 0.4 * np.sin(50.0 * shown + 1e-3 * k * shown),
+                        "tip_twist_rad": 0.1 * np.cos(50.0 * shown + 1e-3 * k * shown),
                         "tip_error_percent": 10.0**-k * shown,
                         "load_end_s": 3.0 if response == "forced" else 0.0,
                     }
@@ -110,6 +111,32 @@ def energy() -> pd.DataFrame:
             )
             for variant in VARIANTS
             for k, (panel, model, integrator) in enumerate(setups)
+        ],
+        ignore_index=True,
+    )
+
+
+@pytest.fixture
+def damped_energy() -> pd.DataFrame:
+    t = np.linspace(0.0, 30.0, 301)
+    return pd.concat(
+        [
+            pd.DataFrame(
+                {
+                    "panel": panel,
+                    "variant": variant,
+                    "response": response,
+                    "model": model,
+                    "integrator": "radau_iia_5",
+                    "t_s": t,
+                    "energy_J": 5.0 * np.exp(-(1.0 - 0.3 * k) * t),
+                    "drift_percent": 1.0 + k * t,
+                    "load_end_s": 3.0 if response == "forced" else 0.0,
+                }
+            )
+            for variant in VARIANTS
+            for panel, response in (("models", "free"), ("models", "forced"), ("integrators", "free"))
+            for k, model in enumerate(("rom", "mlp", "dissipative_hnn", "port_hamiltonian_many"))
         ],
         ignore_index=True,
     )
@@ -208,3 +235,45 @@ def history(metrics) -> pd.DataFrame:
         ],
         ignore_index=True,
     )
+
+
+@pytest.fixture
+def relatives() -> pd.DataFrame:
+    """Runs of two studies of one structure, with other modes, scalings and datasets."""
+    settings = [
+        ("mlp", "mass", "canonical", "default"),
+        ("dissipative_hnn", "mass", "canonical", "default"),
+        ("dissipative_hnn", "mass", "per_feature", "many"),
+        ("dissipative_hnn", "unit", "canonical", "default"),
+        ("port_hamiltonian", "mass", "canonical", "many"),
+    ]
+    rows = [
+        {
+            "study": "wing" if modes == "mass" else "wing_unit",
+            "variant": variant,
+            "run_id": f"{architecture}-{k}-{variant}",
+            "architecture": architecture,
+            "normalisation": modes,
+            "scaling": scaling,
+            "dataset": dataset,
+            "hidden": "32",
+            "activation": "silu",
+            "degree": None,
+            "optimiser": "levenberg_marquardt",
+            "seed": 0,
+            "status": "finished",
+            "parameters": 100 * k + 100,
+            "wall_s": 1.0,
+            "train_nmse": 10.0**-k,
+            "validation_nmse": 10.0**-k,
+            "held_out_nmse": 10.0**-k,
+            "held_out_nmse_by_state": {"eta_1": 10.0**-k, "p_1": 2.0 * 10.0**-k},
+            "long_response_error_percent_median": 1.0,
+            "long_response_error_percent_worst": None if k == 1 else 100.0 * 0.1**k,
+            "diverged": int(k == 1),
+        }
+        for variant in VARIANTS
+        for k, (architecture, modes, scaling, dataset) in enumerate(settings)
+    ]
+    failed = {**rows[0], "run_id": "mlp-failed", "status": "failed", "held_out_nmse": None}
+    return pd.DataFrame([*rows, {**failed, "held_out_nmse_by_state": None}])

@@ -19,9 +19,12 @@ FIXTURES = {
     "cost-*-*": "cost",
     "metrics": "metrics",
     "history": "history",
+    "relatives": "relatives",
 }
+# Figures of damped structures read files of the same names, with other things in them.
+OF_DAMPED = {"energy_decay": "damped_energy"}
 
-SCHEMATIC = ("figure_03", "figure_04", "figure_05", "figure_06", "figure_11")
+SCHEMATIC = ("figure_03", "figure_04", "figure_05", "figure_06", "figure_07", "figure_11")
 
 
 DRAWN: dict[str, Figure] = {}
@@ -29,7 +32,8 @@ DRAWN: dict[str, Figure] = {}
 
 def draw(name, request):
     product = FIGURES[name]
-    return product.make(*(request.getfixturevalue(FIXTURES[read]) for read in product.reads))
+    fixtures = [OF_DAMPED.get(name, FIXTURES[read]) for read in product.reads]
+    return product.make(*map(request.getfixturevalue, fixtures))
 
 
 @pytest.fixture
@@ -81,10 +85,13 @@ def test_the_callers_settings_neither_matter_nor_change(request):
     assert figure.axes[0].xaxis.label.get_size() < 10.0
 
 
-@pytest.mark.parametrize("name", ["figure_09", "figure_10", "figure_12", "figure_13", "cost_accuracy"])
+RESPONSES = ["figure_09", "figure_10", "figure_12", "figure_13", "figure_14", "figure_15", "energy_decay"]
+
+
+@pytest.mark.parametrize("name", [*RESPONSES, "cost_accuracy", "architecture_errors"])
 def test_a_study_of_one_variant_is_drawn_too(name, request):
     product = FIGURES[name]
-    frame = request.getfixturevalue(FIXTURES[product.reads[0]])
+    frame = request.getfixturevalue(OF_DAMPED.get(name, FIXTURES[product.reads[0]]))
     figure = product.make(frame[frame["variant"] == "as_printed"])
     assert all(ax.has_data() for ax in figure.axes)
 
@@ -100,3 +107,30 @@ def test_the_whole_pareto_front_is_labelled(request):
     assert set(front["integrator"]) == {"dop853_fixed(h=0.01)", "rk4(h=0.001)"}
     assert "polynomial H, order 8" in written
     assert "polynomial H, RK4" in written
+
+
+def test_what_only_damped_structures_have_is_drawn_of_them_alone(structure):
+    damped = structure.model_copy(update={"damping_out_of_plane_s": 0.1})
+    undamped_in_torsion = structure.model_copy(update={"damping_torsion_s": 0.1})  # which it has not
+    made = {
+        name: [figure.shows(beam) for beam in (structure, damped, undamped_in_torsion)]
+        for name, figure in FIGURES.items()
+    }
+    assert made["figure_08"] == [True, True, True]
+    assert made["figure_10"] == made["figure_13"] == [True, False, True]
+    assert made["figure_14"] == made["energy_decay"] == [False, True, False]
+
+
+def test_a_model_that_leaves_does_not_set_the_scale(request):
+    response = request.getfixturevalue("free")
+    response.loc[response["model"] == "hnn", ["tip_z_m", "tip_twist_rad"]] *= 1e3
+    figure = FIGURES["figure_14"].make(response)
+    assert figure.axes[0].get_ylim()[1] < 1.0
+
+
+def test_runs_without_an_end_stand_on_the_line_and_failed_ones_nowhere(request):
+    figure = FIGURES["architecture_errors"].make(request.getfixturevalue("relatives"))
+    heights = [line.get_ydata()[0] for line in figure.axes[0].lines]
+    # the line itself and the one run that did not end
+    assert heights.count(1e3) == 2
+    assert len(heights) == 6

@@ -14,6 +14,10 @@ CONTRACT = {
     "seeds": "study, variant, configuration, architecture, hidden, activation, degree, optimiser, seeds, "
     "failed, wall_s_mean, wall_s_std, validation_nmse_mean, validation_nmse_std_decades, "
     "long_response_error_percent_mean, long_response_error_percent_std, diverged",
+    "architectures": "study, variant, architecture, normalisation, scaling, dataset, hidden, activation, degree, "
+    "optimiser, seed, run_id, status, parameters, wall_s, train_nmse, validation_nmse, held_out_nmse, "
+    "long_response_error_percent_median, long_response_error_percent_worst, diverged, "
+    "held_out_nmse_eta_1, held_out_nmse_p_1",
     "cost": "study, variant, response, model, implementation, integrator, simulations, wall_s_mean, "
     "wall_s_std, relative_to_described_percent, relative_to_described_std_percent, "
     "relative_to_numpy_percent, relative_to_compiled_percent, paper_percent, paper_std_percent, "
@@ -22,7 +26,7 @@ CONTRACT = {
 
 
 @pytest.fixture
-def frames(statics, metrics, cost):
+def frames(statics, metrics, cost, relatives):
     frequencies = pd.DataFrame(
         {
             "structure": ["wing"] * 2,
@@ -38,6 +42,7 @@ def frames(statics, metrics, cost):
         "static_tip": statics,
         "natural_frequencies": frequencies,
         "training": metrics,
+        "architectures": relatives,
         "seeds": metrics,
         "cost": cost,
     }
@@ -100,3 +105,12 @@ def test_nothing_beats_a_row_of_the_pareto_front(cost):
             front["tip_error_percent"] <= row.tip_error_percent
         )
         assert beaten_or_on_it.any()
+
+
+def test_failed_runs_stay_in_the_table_of_architectures(relatives):
+    table = TABLES["architectures"].make(relatives)
+    assert len(table) == len(relatives)
+    failed = table[table["status"] == "failed"].iloc[0]
+    assert failed[["held_out_nmse", "held_out_nmse_eta_1"]].isna().all()
+    finished = table[table["status"] == "finished"]
+    assert (finished["held_out_nmse_p_1"] == 2.0 * finished["held_out_nmse_eta_1"]).all()
