@@ -8,6 +8,7 @@ import json
 import math
 import zipfile
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
@@ -69,36 +70,47 @@ class CoefficientNetwork:
         pieces = np.split(self.parameters, np.cumsum([math.prod(shape) for shape in shapes[:-1]]))
         return [piece.reshape(shape) for piece, shape in zip(pieces, shapes, strict=True)]
 
+    @cached_property
+    def _folded(self) -> tuple[Array, Array, Array, Array, Array]:
+        """Origin of the features, then weights and biases with the scales in them."""
+        weights, biases, weights_out, biases_out = self.arrays()
+        half = 0.5 * (self.input_high - self.input_low)
+        output_half = 0.5 * (self.output_high - self.output_low)
+        return (
+            # subtracted before it meets a weight, so that large features cost no digits
+            0.5 * (self.input_low + self.input_high),
+            weights / half[:, None],
+            biases.copy(),
+            weights_out * output_half,
+            0.5 * (self.output_low + self.output_high) + output_half * biases_out,
+        )
+
     def __call__(self, u: Array) -> Array:
         """Coefficients (..., k) at features `u` (..., n)."""
-        weights, biases, weights_out, biases_out = self.arrays()
-        x = (u - _middle(self.input_low, self.input_high)) / _half(self.input_low, self.input_high)
-        y = ACTIVATIONS[self.activation].value(x @ weights + biases) @ weights_out + biases_out
-        return _middle(self.output_low, self.output_high) + _half(self.output_low, self.output_high) * y
+        origin, weights, biases, weights_out, biases_out = self._folded
+        hidden = ACTIVATIONS[self.activation].value((u - origin) @ weights + biases)
+        return hidden @ weights_out + biases_out
 
     def compiled(self) -> CompiledMapping:
-        """The same function as compiled code, scales folded into the weights."""
-        weights, biases, weights_out, biases_out = self.arrays()
-        scale = 1.0 / _half(self.input_low, self.input_high)
-        half = _half(self.output_low, self.output_high)
+        """The same function as compiled code."""
+        origin, weights, biases, weights_out, biases_out = self._folded
         kernel = CoefficientNetworkKernel(
-            activation=ACTIVATIONS[self.activation].tag,
-            weights=np.ascontiguousarray(weights * scale[:, None]),
-            # subtracted before it meets a weight, so that large features cost no digits
-            origin=_middle(self.input_low, self.input_high),
-            biases=biases.copy(),
-            weights_out=np.ascontiguousarray((weights_out * half).T),
-            biases_out=_middle(self.output_low, self.output_high) + half * biases_out,
+            ACTIVATIONS[self.activation].tag,
+            origin,
+            weights,
+            biases,
+            np.ascontiguousarray(weights_out.T),
+            biases_out,
         )
         return CompiledMapping(kernel, self.hidden, self.input_names, self.output_names)
 
 
 class CoefficientNetworkKernel(NamedTuple):
-    """weights (n, hidden), origin (n,), biases (hidden,), weights_out (k, hidden), biases_out (k,)."""
+    """origin (n,), weights (n, hidden), biases (hidden,), weights_out (k, hidden), biases_out (k,)."""
 
     activation: NamedTuple
-    weights: Array
     origin: Array
+    weights: Array
     biases: Array
     weights_out: Array
     biases_out: Array
@@ -106,7 +118,7 @@ class CoefficientNetworkKernel(NamedTuple):
 
 @implements_mapping(CoefficientNetworkKernel)
 def _coefficient_network(kernel, u, y, work):
-    activation, weights, origin, biases, weights_out, biases_out = kernel
+    activation, origin, weights, biases, weights_out, biases_out = kernel
     # unsigned: numba lets a signed index be negative, and a loop over such does not vectorise
     hidden = np.uint64(biases.size)
     for k in range(hidden):
@@ -164,11 +176,3 @@ def load_coefficient_network(path: str | Path) -> CoefficientNetwork:
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         detail = f"no {error}" if isinstance(error, KeyError) else error
         raise SurrogateFileError(f"{path}: not a coefficient network of flexsurr ({detail})") from None
-
-
-def _middle(low: Array, high: Array) -> Array:
-    return 0.5 * (low + high)
-
-
-def _half(low: Array, high: Array) -> Array:
-    return 0.5 * (high - low)

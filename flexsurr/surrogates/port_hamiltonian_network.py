@@ -15,13 +15,16 @@ from flexsurr.surrogates.port_hamiltonian import PortHamiltonian, springs_and_da
 
 @dataclass(frozen=True, eq=False)
 class NetworkPortHamiltonian(PortHamiltonian):
-    """L = Λ + Σ_k R_k σ(w_k · q̂ + b_k), lower triangular; Ĉ and K̂ are products L Lᵀ of constant ones.
+    """L = Λ + Σ_k R_k σ(w_k · s + b_k), lower triangular; Ĉ and K̂ are products L Lᵀ of constant ones.
 
-    `floor` is the packed F, positive definite and not trained, so that M is positive definite everywhere and
-    H ≥ 0. `parameters`: weights (r, n), biases (n,), R (entries, n), Λ (entries,), the factors of K̂ and Ĉ.
+    The inputs s are the coordinates q̂, or if `even` their packed products: then M(−q) = M(q), as it is for a
+    structure that is its own mirror image. `floor` is the packed F, positive definite and not trained, so
+    that M is positive definite everywhere and H ≥ 0. `parameters`: weights (inputs, n), biases (n,),
+    R (entries, n), Λ (entries,), the factors of K̂ and Ĉ.
     """
 
     floor: Array
+    even: bool
     hidden: tuple[int, ...]
     activation: str
 
@@ -37,15 +40,22 @@ class NetworkPortHamiltonian(PortHamiltonian):
         super().__post_init__()
 
     @classmethod
-    def shapes(cls, pairs: int, neurons: int) -> list[tuple[int, ...]]:
+    def shapes(cls, pairs: int, neurons: int, even: bool) -> list[tuple[int, ...]]:
         """Shapes of the arrays in `parameters`, in their order."""
         entries = packed_size(pairs)
-        return [(pairs, neurons), (neurons,), (entries, neurons), (entries,), (entries,), (entries,)]
+        return [
+            (entries if even else pairs, neurons),
+            (neurons,),
+            (entries, neurons),
+            (entries,),
+            (entries,),
+            (entries,),
+        ]
 
     @property
     def parameter_count(self) -> int:
         """Weights, biases and constant entries."""
-        return sum(map(math.prod, self.shapes(self.pairs, self.hidden[0])))
+        return sum(map(math.prod, self.shapes(self.pairs, self.hidden[0], self.even)))
 
     @property
     def sigma(self) -> ActivationFunction:
@@ -54,7 +64,7 @@ class NetworkPortHamiltonian(PortHamiltonian):
 
     def arrays(self) -> list[Array]:
         """Views of the parameters in their shapes."""
-        shapes = self.shapes(self.pairs, self.hidden[0])
+        shapes = self.shapes(self.pairs, self.hidden[0], self.even)
         pieces = np.split(self.parameters, np.cumsum([math.prod(shape) for shape in shapes[:-1]]))
         return [piece.reshape(shape) for piece, shape in zip(pieces, shapes, strict=True)]
 
@@ -70,12 +80,24 @@ class NetworkPortHamiltonian(PortHamiltonian):
         factor = lower(self.arrays()[5], self.pairs)
         return factor @ factor.T
 
+    def _inputs(self, q: Array) -> tuple[Array, Array]:
+        """The inputs s (..., i) and their derivatives by q̂_j (..., j, i)."""
+        if not self.even:
+            return q, np.broadcast_to(np.eye(self.pairs), (*q.shape, self.pairs))
+        rows, columns = np.tril_indices(self.pairs)
+        identity = np.eye(self.pairs)
+        by_q = q[..., None, rows] * identity[:, columns] + q[..., None, columns] * identity[:, rows]
+        return q[..., rows] * q[..., columns], by_q
+
     def _factor(self, q: Array) -> tuple[Array, Array]:
         """L (..., r, r) and its derivatives by q̂_k (..., r, r, r), k first."""
         weights, biases, readout, constant, *_ = self.arrays()
-        z = q @ weights + biases
+        inputs, turned = self._inputs(q)
+        z = inputs @ weights + biases
         factor = constant + self.sigma.value(z) @ readout.T
-        derivatives = np.einsum("jk,...k,ek->...je", weights, self.sigma.slope(z), readout)
+        derivatives = np.einsum(
+            "...ji,ik,...k,ek->...je", turned, weights, self.sigma.slope(z), readout, optimize=True
+        )
         return lower(factor, self.pairs), lower(derivatives, self.pairs)
 
     def scaled_mass(self, q: Array) -> Array:
@@ -98,7 +120,8 @@ class NetworkPortHamiltonian(PortHamiltonian):
         # M = S (F + L Lᵀ) S with S = √(s_p / s_q̇), which a canonical scaling makes one number for each pair
         rows, _ = np.tril_indices(self.pairs)
         roots = np.sqrt(of_p / of_rates)
-        layer = np.concatenate([(weights / of_q[:, None]).ravel(), biases])
+        of_inputs, _ = self._inputs(of_q)
+        layer = np.concatenate([(weights / of_inputs[:, None]).ravel(), biases])
         kernel = NetworkPortHamiltonianKernel(
             self.sigma.tag,
             layer,
@@ -107,16 +130,17 @@ class NetworkPortHamiltonian(PortHamiltonian):
             pack(symmetric(self.floor, self.pairs) * np.outer(roots, roots)),
             np.ascontiguousarray(self.stiffness).ravel(),
             np.ascontiguousarray(self.damping).ravel(),
+            self.even,
         )
-        return kernel, 4 * self.hidden[0] + 2 * self.packed_size + 3 * self.pairs
+        return kernel, 3 * self.hidden[0] + 3 * self.packed_size + 3 * self.pairs
 
     def settings(self) -> dict[str, Any]:
-        """Hidden layer and activation; the floor is saved as an array."""
-        return {"hidden": list(self.hidden), "activation": self.activation}
+        """Hidden layer, activation and parity; the floor is saved as an array."""
+        return {"hidden": list(self.hidden), "activation": self.activation, "even": self.even}
 
 
 class NetworkPortHamiltonianKernel(NamedTuple):
-    """`layer`: weights (r, n) and biases (n,); `readout` (entries, n); the rest packed or (r, r)."""
+    """`layer`: weights (inputs, n) and biases (n,); `readout` (entries, n); the rest packed or (r, r)."""
 
     activation: NamedTuple
     layer: Array
@@ -125,25 +149,33 @@ class NetworkPortHamiltonianKernel(NamedTuple):
     floor: Array
     stiffness: Array
     damping: Array
+    even: bool
 
 
 @implements_rhs(NetworkPortHamiltonianKernel, inline=False)
 def _network_port_hamiltonian(kernel, t, x, dx, work):
-    activation, layer, readout, constant, floor, stiffness, damping = kernel
+    activation, layer, readout, constant, floor, stiffness, damping, even = kernel
     r = offset(x.size // 2)
     entries = offset(constant.size)
     n = offset(readout.size // constant.size)
-    # work: q, then σ's arguments (later slopes), values, adjoints; L, M; q̇ and Lᵀ q̇
-    z = r
+    inputs = entries if even else r
+    # work: s, then σ's arguments (later slopes), values, adjoints; L, M; q̇ and Lᵀ q̇; ∂/∂q
+    z = inputs
     values = z + n
     adjoint = values + n
     factor = adjoint + n
     matrix = factor + entries
     rates = matrix + entries
     turned = rates + r
-    for j in range(r):
-        work[j] = x[j]
-    forward(layer, offset(0), r, n, work, offset(0), z)
+    e = offset(0)
+    for i in range(r):
+        if even:
+            for j in range(i + offset(1)):
+                work[e] = x[i] * x[j]
+                e += offset(1)
+        else:
+            work[i] = x[i]
+    forward(layer, offset(0), inputs, n, work, offset(0), z)
     for k in range(n):
         work[values + k] = value(activation, work[z + k])
     for k in range(n):
@@ -185,10 +217,22 @@ def _network_port_hamiltonian(kernel, t, x, dx, work):
             for k in range(n):
                 work[adjoint + k] += weight * readout[row + k]
             e += offset(1)
-    for j in range(r):
-        total = 0.0
-        row = j * n
-        for k in range(n):
-            total += layer[row + k] * work[z + k] * work[adjoint + k]
-        dx[r + j] = total
+    for k in range(n):
+        work[adjoint + k] *= work[z + k]
+    for i in range(r):
+        dx[r + i] = 0.0
+    e = offset(0)
+    for i in range(r):
+        for j in range(i + offset(1)):
+            if even or i == j:
+                row = (e if even else i) * n
+                total = 0.0
+                for k in range(n):
+                    total += layer[row + k] * work[adjoint + k]
+                if even:
+                    dx[r + i] += total * x[j]
+                    dx[r + j] += total * x[i]
+                else:
+                    dx[r + i] = total
+            e += offset(1)
     springs_and_dampers(stiffness, damping, x, dx)

@@ -85,7 +85,8 @@ def _surrogate(header: dict[str, Any], arrays: dict[str, np.ndarray]) -> Surroga
         return polynomial(**common, exponents=arrays["exponents"].astype(np.int64, casting="safe"))
     common |= {"hidden": tuple(header["hidden"]), "activation": header["activation"]}
     if architecture == NetworkPortHamiltonian.architecture:
-        return NetworkPortHamiltonian(**common, floor=np.ascontiguousarray(arrays["floor"], dtype=np.float64))
+        floor = np.ascontiguousarray(arrays["floor"], dtype=np.float64)
+        return NetworkPortHamiltonian(**common, floor=floor, even=bool(header["even"]))
     return NETWORKS[architecture](**common)
 
 

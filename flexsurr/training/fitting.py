@@ -5,7 +5,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal
+from typing import Literal, Protocol
 
 import numpy as np
 import pandas as pd
@@ -17,6 +17,7 @@ from flexsurr.surrogates import (
     MLP,
     DissipativeHNN,
     Network,
+    NetworkPortHamiltonian,
     StateScaling,
     Surrogate,
     canonical_scaling,
@@ -32,6 +33,8 @@ from flexsurr.training.levenberg_marquardt import LevenbergMarquardt
 from flexsurr.training.losses import nmse, nmse_per_state
 from flexsurr.training.objective import Objective
 from flexsurr.training.optimiser import Optimiser
+from flexsurr.training.port_hamiltonian_objective import PortHamiltonianObjective
+from flexsurr.training.port_hamiltonian_training import InverseThenForward, untrained_port_hamiltonian
 from flexsurr.training.progress import Progress
 
 CHECKPOINT_EVERY_S = 5.0
@@ -78,10 +81,7 @@ def fit(trial: Trial, dataset: Dataset, folder: str | Path, report: Report | Non
     folder = Path(folder)
     if trial.optimiser == "least_squares":
         return _fit_linear(trial, dataset, report)
-    network = _untrained(trial, dataset)
-    training = Objective.of(network, dataset.x_train, dataset.dx_train)
-    validation = Objective.of(network, dataset.x_validation, dataset.dx_validation)
-    optimiser = _optimiser(trial, training)
+    network, training, validation, optimiser = _begun(trial, dataset)
     belongs_to = {"trial": trial.model_dump(mode="json"), "dataset": dataset.sha256}
     progress = Progress(validation.loss(network.parameters), network.parameters)
     states = read_checkpoint(folder, belongs_to)
@@ -121,6 +121,29 @@ def fit(trial: Trial, dataset: Dataset, folder: str | Path, report: Report | Non
         history=progress.history(),
         validation_nmse_per_state=_per_state(network, dataset),
     )
+
+
+class _Loss(Protocol):
+    """The nmse as a function of the weights."""
+
+    def loss(self, parameters: Array) -> float: ...
+
+
+def _begun(
+    trial: Trial, dataset: Dataset
+) -> tuple[Network | NetworkPortHamiltonian, _Loss, _Loss, Optimiser]:
+    """Random weights, their losses over training and validation samples, and what will make them better."""
+    training = dataset.x_train, dataset.dx_train
+    validation = dataset.x_validation, dataset.dx_validation
+    if trial.architecture == "port_hamiltonian":
+        assert trial.activation is not None  # a Trial of a network has one
+        port = untrained_port_hamiltonian(dataset, trial.hidden, trial.activation, trial.seed)
+        inverse, forward = (PortHamiltonianObjective.of(port, *training, forward=f) for f in (False, True))
+        held_out = PortHamiltonianObjective.of(port, *validation, forward=True)
+        return port, forward, held_out, InverseThenForward(inverse, forward, port.parameters)
+    network = _untrained(trial, dataset)
+    objective = Objective.of(network, *training)
+    return network, objective, Objective.of(network, *validation), _optimiser(trial, objective)
 
 
 def _at_end(trial: Trial, progress: Progress, optimiser: Optimiser) -> bool:

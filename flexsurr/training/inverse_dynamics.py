@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexsurr.simulation.rhs import Array
-from flexsurr.surrogates import PairScaling, PolynomialPortHamiltonian, pair_scaling
+from flexsurr.surrogates import PairScaling, PolynomialPortHamiltonian, StateScaling, pair_scaling
 from flexsurr.surrogates.monomials import (
     Exponents,
     differentiate,
@@ -140,7 +140,7 @@ def stream_port_hamiltonian(
     return problem.solve(True, state_names, state_units)
 
 
-def channel_spread(scaling: PairScaling, x: Array, dx: Array) -> Array:
+def channel_spread(scaling: StateScaling, x: Array, dx: Array) -> Array:
     """Standard deviations (2r,) of the scaled p and ṗ; ValueError where one does not vary."""
     count, r = x.shape[1], x.shape[1] // 2
     momenta, forces = x[:, r:] / scaling.states(count)[r:], dx[:, r:] / scaling.rates(count)[r:]

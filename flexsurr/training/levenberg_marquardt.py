@@ -12,7 +12,7 @@ import numpy as np
 from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
 from flexsurr.simulation.rhs import Array
-from flexsurr.training.objective import NormalEquations
+from flexsurr.training.normal_equations import NormalEquations
 
 INITIAL_DAMPING = 1e-2
 LARGEST_DAMPING = 1e12

@@ -12,16 +12,9 @@ from flexsurr.surrogates import Network
 from flexsurr.training.batches import fields, loss_and_gradient, residuals_and_jacobian
 from flexsurr.training.forward_pass import workspace
 from flexsurr.training.losses import output_weights
+from flexsurr.training.normal_equations import NormalEquations, accumulated
 
 CHUNK = 1 << 20  # elements of the Jacobian that exist at a time: 8 MB
-
-
-class NormalEquations(NamedTuple):
-    """JᵀJ (n, n) and Jᵀr (n,) of residuals r whose sum of squares is the loss."""
-
-    loss: float
-    gram: Array
-    gradient: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,16 +65,11 @@ class Objective:
     def normal_equations(self, parameters: Array) -> NormalEquations:
         """JᵀJ and Jᵀr, accumulated over pieces of the Jacobian: memory is bounded by `CHUNK`."""
         kernel = self.kernel(parameters)
-        d, n = self.x.shape[1], parameters.size
         roots = np.sqrt(self.output_weights / len(self.x))
-        step = max(CHUNK // (n * d), 1)
-        jacobian, residuals = np.empty((step * d, n)), np.empty(step * d)
-        loss, gram, gradient = 0.0, np.zeros((n, n)), np.zeros(n)
-        for first in range(0, len(self.x), step):
-            x, y = self.x[first : first + step], self.y[first : first + step]
-            residuals_and_jacobian(kernel, x, y, roots, residuals, jacobian, self.workspace)
-            rows, errors = jacobian[: x.size], residuals[: x.size]
-            loss += float(errors @ errors)
-            gram += rows.T @ rows
-            gradient += rows.T @ errors
-        return NormalEquations(loss, gram, gradient)
+
+        def rows(part: slice, residuals: Array, jacobian: Array) -> None:
+            residuals_and_jacobian(
+                kernel, self.x[part], self.y[part], roots, residuals, jacobian, self.workspace
+            )
+
+        return accumulated(rows, self.x.shape, parameters.size, CHUNK)

@@ -8,7 +8,11 @@ from flexsurr.simulation.rhs import Array
 class Optimiser(Protocol):
     """Advances `parameters` (n,) by an epoch at a time."""
 
-    parameters: Array
+    @property
+    def parameters(self) -> Array:
+        """The weights."""
+        ...
+
     finished: str
     """Why there is nothing left to do; empty while there is."""
 

@@ -81,16 +81,19 @@ def port_polynomial(
     return PolynomialPortHamiltonian(parameters, pair_scaling(count), **states(count), exponents=exponents)
 
 
-def port_network(count: int, neurons: int, activation: str, seed: int = 0) -> NetworkPortHamiltonian:
+def port_network(
+    count: int, neurons: int, activation: str, seed: int = 0, even: bool = False
+) -> NetworkPortHamiltonian:
     """Any weights; the floor of M is a tenth of the identity and more."""
     generator, r = np.random.default_rng(seed), count // 2
-    size = sum(math.prod(shape) for shape in NetworkPortHamiltonian.shapes(r, neurons))
+    size = sum(math.prod(shape) for shape in NetworkPortHamiltonian.shapes(r, neurons, even))
     floor = pack(0.1 * np.eye(r) + 0.01)
     return NetworkPortHamiltonian(
         0.5 * generator.normal(size=size),
         pair_scaling(count),
         **states(count),
         floor=floor,
+        even=even,
         hidden=(neurons,),
         activation=activation,
     )
@@ -102,5 +105,6 @@ PORT_HAMILTONIANS = {
     "odd and even": port_polynomial(6, 3, even=False),
     "network of one pair": port_network(2, 5, "half_log"),
     "network": port_network(6, 7, "softplus"),
+    "even network": port_network(6, 5, "softplus", even=True),
 }
 NETWORKS = {"hnn": HNN, "mlp": MLP, "dissipative_hnn": DissipativeHNN}

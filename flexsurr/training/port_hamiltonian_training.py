@@ -1,0 +1,111 @@
+"""A port-Hamiltonian network before training, and the two stages of it."""
+
+import numpy as np
+
+from flexsurr.simulation.rhs import Array
+from flexsurr.surrogates import NetworkPortHamiltonian
+from flexsurr.surrogates.packed import pack, semidefinite_factor
+from flexsurr.training.dataset import Dataset
+from flexsurr.training.inverse_dynamics import NotPositiveDefinite, fit_port_hamiltonian
+from flexsurr.training.levenberg_marquardt import LevenbergMarquardt
+from flexsurr.training.port_hamiltonian_objective import PortHamiltonianObjective
+
+INVERSE_EPOCHS = 60  # more of them no longer help the second stage
+BASE_DEGREE = 2
+FLOOR = 0.01  # of the mean mass matrix
+READOUT = 0.1  # of its diagonal, all neurons together
+SMALLEST = 1e-3  # eigenvalue of the mean mass matrix over the largest
+
+
+def untrained_port_hamiltonian(
+    dataset: Dataset, hidden: tuple[int, ...], activation: str, seed: int
+) -> NetworkPortHamiltonian:
+    """Random neurons about the mean mass matrix, springs and dampers of a quadratic fit by least squares.
+
+    Whether M is even in q is taken from that fit.
+    """
+    try:
+        base = fit_port_hamiltonian(dataset, BASE_DEGREE)
+    except NotPositiveDefinite as failure:
+        base = failure.surrogate
+    r = base.pairs
+    even = not np.any(base.exponents.sum(axis=1) % 2)
+    q = dataset.x_train[:, :r] / base.scaling.states(2 * r)[:r]
+    mean = _positive_definite(np.mean(base.scaled_mass(q), axis=0))
+    generator = np.random.default_rng(seed)
+    (inputs, neurons), _, (entries, _), *_ = NetworkPortHamiltonian.shapes(r, hidden[0], even)
+    rows, _ = np.tril_indices(r)
+    sizes = READOUT * np.sqrt(np.diag(mean)[rows] / neurons)
+    parameters = [
+        generator.standard_normal((inputs, neurons)),
+        generator.uniform(-1.0, 1.0, neurons),
+        sizes[:, None] * generator.standard_normal((entries, neurons)),
+        pack(np.array(np.linalg.cholesky((1.0 - FLOOR) * mean), dtype=np.float64)),
+        semidefinite_factor(base.scaled_stiffness),
+        semidefinite_factor(base.scaled_damping),
+    ]
+    return NetworkPortHamiltonian(
+        np.concatenate([part.ravel() for part in parameters]),
+        base.scaling,
+        dataset.state_names,
+        dataset.state_units,
+        floor=pack(FLOOR * mean),
+        even=even,
+        hidden=hidden,
+        activation=activation,
+    )
+
+
+def _positive_definite(matrix: Array) -> Array:
+    values, vectors = np.linalg.eigh(matrix)
+    nearest: Array = (vectors * np.maximum(values, SMALLEST * values[-1])) @ vectors.T
+    return nearest
+
+
+class InverseThenForward:
+    """Levenberg–Marquardt on inverse dynamics, from where that ends on the field. Satisfies `Optimiser`.
+
+    The first is close to linear and finds its way from random weights; the second is what the field's error
+    asks for. Losses returned are those of the field.
+    """
+
+    def __init__(
+        self, inverse: PortHamiltonianObjective, forward: PortHamiltonianObjective, parameters: Array
+    ) -> None:
+        self.finished = ""
+        self._forward = forward
+        self._done = 0
+        self._is_forward = False
+        self._method = LevenbergMarquardt(inverse, parameters)
+
+    @property
+    def parameters(self) -> Array:
+        """The weights (n,)."""
+        return self._method.parameters
+
+    def epoch(self) -> float:
+        """One accepted step of the stage it is in; the field's loss after it."""
+        loss = self._method.epoch()
+        self._done += 1
+        if self._is_forward:
+            self.finished = self._method.finished
+            return loss
+        if self._done >= INVERSE_EPOCHS or self._method.finished:
+            self._begin_forward()
+        return self._forward.loss(self.parameters)
+
+    def _begin_forward(self) -> None:
+        self._is_forward = True
+        self._method = LevenbergMarquardt(self._forward, self.parameters)
+
+    def state(self) -> dict[str, Array]:
+        """The stage and its method's state."""
+        return {**self._method.state(), "stage": np.array([self._done, int(self._is_forward)])}
+
+    def restore(self, state: dict[str, Array]) -> None:
+        """Go on from a `state`."""
+        done, is_forward = state["stage"].tolist()
+        self._done = int(done)
+        if is_forward and not self._is_forward:
+            self._begin_forward()
+        self._method.restore(state)

@@ -1,0 +1,129 @@
+"""Port-Hamiltonian networks: derivatives of their residuals, and the two stages of their training."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from flexsurr.config.sweep import Trial
+from flexsurr.surrogates import PairScaling, PolynomialPortHamiltonian, load, save
+from flexsurr.training import fit, nmse, split_dataset
+from flexsurr.training.inverse_dynamics import channel_spread
+from flexsurr.training.port_hamiltonian_objective import PortHamiltonianObjective
+from flexsurr.training.port_hamiltonian_training import untrained_port_hamiltonian
+
+NAMES = ("eta_1", "eta_2", "p_1", "p_2")
+TRIAL = Trial(architecture="port_hamiltonian", hidden=(6,), activation="atan", epochs=70)
+
+
+def samples(odd: float, number=240, seed=0):
+    """Of a damped system of two coordinates; `odd` makes its mass matrix uneven in q."""
+    exponents = np.array([[0, 0], [1, 0], [0, 1], [2, 0], [1, 1], [0, 2]])
+    mass = np.zeros((3, 6))
+    mass[:, 0] = [1.0, 0.2, 0.7]
+    mass[:, 3] = [0.1, -0.2, 0.3]
+    mass[:, 5] = [0.2, 0.05, -0.1]
+    mass[:, 1] = odd
+    truth = PolynomialPortHamiltonian(
+        np.concatenate([mass.ravel(), [2.0, 0.3, 5.0], [0.3, -0.2, 0.5]]),
+        PairScaling(q=(0.3, 2.0), action=1.5, energy=60.0),
+        NAMES,
+        ("1",) * 4,
+        exponents,
+    )
+    x = np.random.default_rng(seed).uniform(-1.0, 1.0, (number, 4)) * truth.scaling.states(4)
+    return split_dataset(
+        np.arange(number) % 4,
+        x,
+        truth.derivative(0.0, x),
+        validation=[0],
+        state_names=NAMES,
+        state_units=("1",) * 4,
+    )
+
+
+EVEN, ODD = samples(0.0), samples(0.1)
+
+
+def objective_of(dataset, forward):
+    network = untrained_port_hamiltonian(dataset, (4,), "atan", 1)
+    return PortHamiltonianObjective.of(network, dataset.x_train, dataset.dx_train, forward)
+
+
+def residuals(objective, parameters):
+    """In plain NumPy: of the field, or of the momenta and forces at the measured rates."""
+    model = replace(objective.network, parameters=parameters)
+    q, p = objective.x[:, :2], objective.x[:, 2:]
+    if objective.forward:
+        return (model.scaled_field(objective.x) - objective.y) * objective.roots
+    rates, forces = objective.y[:, :2], objective.y[:, 2:]
+    momenta = np.einsum("sij,sj->si", model.scaled_mass(q), rates)
+    gyroscopic = np.einsum("skij,si,sj->sk", model.scaled_mass_derivatives(q), rates, rates)
+    found = 0.5 * gyroscopic - q @ model.scaled_stiffness - rates @ model.scaled_damping
+    return np.concatenate([momenta - p, found - forces], axis=1) * objective.roots
+
+
+@pytest.mark.parametrize("dataset", [EVEN, ODD], ids=["even", "odd"])
+@pytest.mark.parametrize("forward", [False, True], ids=["inverse", "forward"])
+def test_normal_equations(dataset, forward, monkeypatch):
+    """Against differences of the residuals, in pieces smaller than the samples."""
+    objective = objective_of(dataset, forward)
+    assert objective.network.even == (dataset is EVEN)
+    parameters = objective.network.parameters
+    monkeypatch.setattr("flexsurr.training.port_hamiltonian_objective.CHUNK", 28 * parameters.size)
+    columns = []
+    for e in np.eye(parameters.size):
+        d = [
+            (residuals(objective, parameters + h * e) - residuals(objective, parameters - h * e)) / (2 * h)
+            for h in (1e-3, 2e-3)
+        ]
+        columns.append(((4 * d[0] - d[1]) / 3).ravel())
+    jacobian = np.stack(columns, axis=1)
+    errors = residuals(objective, parameters).ravel()
+    found = objective.normal_equations(parameters)
+    gram, gradient = jacobian.T @ jacobian, jacobian.T @ errors
+    np.testing.assert_allclose(found.gram, gram, atol=1e-8 * np.max(np.abs(gram)))
+    np.testing.assert_allclose(found.gradient, gradient, atol=1e-8 * np.max(np.abs(gradient)))
+    assert found.loss == pytest.approx(errors @ errors) == pytest.approx(objective.loss(parameters))
+
+
+def test_the_forward_loss_is_the_nmse():
+    objective = objective_of(ODD, True)
+    expected = nmse(objective.network.derivative(0.0, ODD.x_train), ODD.dx_train)
+    assert objective.loss(objective.network.parameters) == pytest.approx(expected)
+    spread = channel_spread(objective.network.scaling, ODD.x_train, ODD.dx_train)
+    weights = (objective_of(ODD, False).roots * spread) ** 2
+    np.testing.assert_allclose(weights, 1.0 / (4 * len(ODD.x_train)))
+
+
+def test_it_learns(tmp_path):
+    result = fit(TRIAL, EVEN, tmp_path)
+    assert result.status == "finished"
+    assert result.validation_nmse < 1e-5
+    assert result.surrogate.even
+    np.testing.assert_allclose(result.surrogate.stiffness[0, 0], 2.0 * 60.0 / 0.3**2, rtol=1e-3)
+    save(result.surrogate, tmp_path / "weights.npz")
+    np.testing.assert_array_equal(load(tmp_path / "weights.npz").parameters, result.surrogate.parameters)
+
+
+class Killed(Exception):
+    """Stands for the end of a process."""
+
+
+def test_killed_in_either_stage_and_resumed_is_as_uninterrupted(tmp_path, monkeypatch):
+    monkeypatch.setattr("flexsurr.training.port_hamiltonian_training.INVERSE_EPOCHS", 5)
+    trial = TRIAL.model_copy(update={"epochs": 12})
+    expected = fit(trial, EVEN, tmp_path / "whole")
+    monkeypatch.setattr("flexsurr.training.fitting.CHECKPOINT_EVERY_S", 0.0)
+    for last in (3, 6, 9):
+
+        def kill(epoch, *_, last=last):
+            if epoch == last:
+                raise Killed
+
+        with pytest.raises(Killed):
+            fit(trial, EVEN, tmp_path / "killed", kill)
+    found = fit(trial, EVEN, tmp_path / "killed")
+    np.testing.assert_array_equal(found.surrogate.parameters, expected.surrogate.parameters)
+    losses = ["train_loss", "validation_loss"]
+    np.testing.assert_array_equal(found.history[losses], expected.history[losses])
