@@ -33,6 +33,7 @@ include: "workflow/rules/plan.smk"
 include: "workflow/rules/data.smk"
 include: "workflow/rules/learning.smk"
 include: "workflow/rules/airliner_data.smk"
+include: "workflow/rules/airliner_flight.smk"
 include: "workflow/rules/evaluation.smk"
 include: "workflow/rules/report.smk"
 

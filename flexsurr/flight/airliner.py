@@ -5,8 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from flexsurr.aerodynamics.airframe import Airframe, ModalMotion, airframe_of
-from flexsurr.aerodynamics.airliner_lattice import PanelCounts, airliner_lattice
+from flexsurr.aerodynamics.airliner_lattice import airliner_lattice
 from flexsurr.aerodynamics.lattice import Lattice
+from flexsurr.config.panels import PanelCounts
 from flexsurr.flight.modes import FreeModes
 from flexsurr.flight.surface_motion import surface_motion
 

@@ -1,0 +1,78 @@
+"""Trim the airliner, linearise, and fly the three doublets, with the lattice and with the network."""
+
+import logging
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from flexsurr.cli.command import Job, command
+from flexsurr.cli.flying import airliner_of, forms_of, selected_network
+from flexsurr.cli.frames import write_frame
+from flexsurr.config.flight import CONTROL_NAMES, FlightCondition
+from flexsurr.evaluation.airliner_flights import Flight, flown, outputs
+from flexsurr.evaluation.airliner_models import REFERENCE
+from flexsurr.evaluation.airliner_modes import MODE_COLUMNS, airliner_modes
+from flexsurr.flight.trim import TrimNotFound, trim, trim_envelope
+
+log = logging.getLogger(__name__)
+
+
+def main(
+    job: Job, selection: Path, runs: Path, modes: Path, table: Path, doublets: Path, trims: Path
+) -> None:
+    """Write the modes, airliner_modes.csv, the doublets' time histories, and the trims over the envelope."""
+    plane = airliner_of(job)
+    settings = plane.settings
+    forms = forms_of(job, plane, selected_network(selection, runs), with_rebuild=False)
+    cruise = {
+        name: trim(plane.flying(mapping), settings.condition, settings.limits)
+        for name, mapping in forms.items()
+    }
+    frame = airliner_modes(cruise[REFERENCE], cruise["network"])
+    write_frame(modes, frame)
+    write_frame(table, frame[list(MODE_COLUMNS)])
+    histories = []
+    for control in CONTROL_NAMES:
+        flight = Flight(0, control, settings.condition, settings.doublet_deg)
+        for name, start in cruise.items():
+            trajectory = flown(start, flight, settings)
+            history = pd.DataFrame(outputs(trajectory))
+            history.insert(0, "t_s", trajectory.t)
+            history.insert(0, "control", control)
+            history.insert(0, "model", name)
+            histories.append(history)
+    write_frame(doublets, pd.concat(histories, ignore_index=True))
+    conditions = [
+        FlightCondition(mach=mach, altitude_m=altitude)
+        for altitude in settings.envelope_altitude_m
+        for mach in settings.envelope_mach
+    ]
+    rows = []
+    for name, mapping in forms.items():
+        found, missing = trim_envelope(plane.flying(mapping), conditions, settings.limits)
+        for reason in missing:
+            log.warning("%s: %s", name, reason)
+        for point in found:
+            row = {"model": name, **point.condition.model_dump()}
+            row["alpha_deg"] = float(np.degrees(point.alpha_rad))
+            row["i_t_deg"] = float(np.degrees(point.model.controls[0]))
+            row["thrust_N"] = point.model.thrust_N
+            row.update({f"eta_{k}": float(value) for k, value in enumerate(point.eta, start=1)})
+            rows.append(row)
+    write_frame(trims, pd.DataFrame(rows))
+
+
+if __name__ == "__main__":
+    command(
+        main,
+        {
+            "selection": "the chosen network",
+            "runs": "the folder of all runs",
+            "modes": "eigenvalues with their errors",
+            "table": "airliner_modes.csv",
+            "doublets": "time histories",
+            "trims": "over the envelope",
+        },
+        expected=(TrimNotFound,),
+    )

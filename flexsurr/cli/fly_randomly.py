@@ -1,0 +1,39 @@
+"""Time random flights of the airliner with each form of its aerodynamics, and count what left the limits."""
+
+from pathlib import Path
+
+from flexsurr.cli.command import Job, command
+from flexsurr.cli.flying import airliner_of, forms_of, selected_network
+from flexsurr.cli.frames import write_frame
+from flexsurr.evaluation.airliner_cost import airliner_cost, exceedance_summary, fly_all
+from flexsurr.evaluation.airliner_flights import random_flights
+
+
+def main(
+    job: Job, selection: Path, runs: Path, flights: Path, exceedances: Path, cost: Path, limits: Path
+) -> None:
+    """Write every flight, every exceedance, airliner_cost.csv and airliner_limits.csv."""
+    plane = airliner_of(job)
+    network = selected_network(selection, runs)
+    forms = forms_of(job, plane, network, with_rebuild=True)
+    flown, left = fly_all(
+        plane, forms, random_flights(plane.settings), (network.input_low, network.input_high)
+    )
+    write_frame(flights, flown)
+    write_frame(exceedances, left)
+    write_frame(cost, airliner_cost(flown))
+    write_frame(limits, exceedance_summary(left))
+
+
+if __name__ == "__main__":
+    command(
+        main,
+        {
+            "selection": "the chosen network",
+            "runs": "the folder of all runs",
+            "flights": "one row a flight and model",
+            "exceedances": "one row a flight and input",
+            "cost": "airliner_cost.csv",
+            "limits": "airliner_limits.csv",
+        },
+    )

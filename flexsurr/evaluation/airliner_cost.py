@@ -1,0 +1,133 @@
+"""What a flight costs with the network and with each form of the lattice, and how far they fly apart."""
+
+import logging
+from collections.abc import Mapping, Sequence
+from functools import partial
+
+import numpy as np
+import pandas as pd
+
+from flexsurr.evaluation.airliner_flights import MOVED, Flight, flown, limit_exceedances, peak_errors
+from flexsurr.evaluation.airliner_models import REFERENCE, Airliner
+from flexsurr.evaluation.ratios import relative_percent
+from flexsurr.evaluation.timing import wall_time
+from flexsurr.flight.trim import Trim, TrimNotFound, trim
+from flexsurr.simulation.mapping import CompiledMapping
+from flexsurr.simulation.rhs import Array
+from flexsurr.simulation.trajectory import Trajectory
+
+log = logging.getLogger(__name__)
+
+REBUILT = "vlm_rebuild"
+BASELINES = (REBUILT, REFERENCE, "quadratic")
+# A flight with these takes seconds: a steady measure by itself.
+SLOW = (REBUILT, REFERENCE)
+# The study's table: the network's flights over those with the lattice rebuilt, mean and standard deviation.
+PAPER_PERCENT, PAPER_STD_PERCENT = 0.995, 0.025
+
+
+def fly_all(
+    plane: Airliner,
+    aerodynamics: Mapping[str, CompiledMapping],
+    flights: Sequence[Flight],
+    limits: tuple[Array, Array] | None = None,
+) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Time every flight with every aerodynamics, and compare its outputs with those of `REFERENCE`.
+
+    Each flies from its own trim. The rebuilt lattice flies the first few only, as the settings say. A flight
+    without a trim is left out, and the log says so. `limits` are those of the network's training.
+
+    First frame, a row per model and flight: model, flight, control, mach, altitude_m, amplitude_deg, wall_s,
+    completed, and for each output that the doublet moves <output>_error_percent. Second:
+    `limit_exceedances` of the flights with the network.
+    """
+    settings = plane.settings
+    rows: list[dict[str, object]] = []
+    exceedances: list[pd.DataFrame] = []
+    for place, flight in enumerate(flights):
+        flown_by: dict[str, tuple[Trim, Trajectory]] = {}
+        for model, mapping in aerodynamics.items():
+            if model == REBUILT and place >= settings.random_flights.rebuild_flights:
+                continue
+            try:
+                start = trim(plane.flying(mapping), flight.condition, settings.limits)
+            except TrimNotFound as error:
+                log.warning("flight %d, %s: %s", flight.number, model, error)
+                continue
+            repeats = 1 if model in SLOW else settings.random_flights.repeats
+            if place == 0 and model != REBUILT:
+                flown(start, flight, settings)  # loads or compiles what the timed flights use
+            trajectory, wall_s = wall_time(partial(flown, start, flight, settings), repeats)
+            flown_by[model] = start, trajectory
+            rows.append(
+                {
+                    "model": model,
+                    "flight": flight.number,
+                    "control": flight.control,
+                    "mach": flight.condition.mach,
+                    "altitude_m": flight.condition.altitude_m,
+                    "amplitude_deg": flight.amplitude_deg,
+                    "wall_s": wall_s,
+                    "completed": trajectory.completed,
+                }
+            )
+            if model != REFERENCE and REFERENCE in flown_by:
+                errors = peak_errors(flown_by[REFERENCE][1], trajectory, MOVED[flight.control])
+                rows[-1].update({f"{name}_error_percent": error for name, error in errors.items()})
+        if limits is not None and "network" in flown_by:
+            start, trajectory = flown_by["network"]
+            exceedances.append(limit_exceedances(start, flight, trajectory, settings, *limits))
+    return pd.DataFrame(rows), pd.concat(exceedances, ignore_index=True) if exceedances else pd.DataFrame()
+
+
+def airliner_cost(flights: pd.DataFrame) -> pd.DataFrame:
+    """One row per model: simulations, wall_s_mean, wall_s_std, relative_to_<baseline>_percent and its spread.
+
+    Relative costs are means over the flights that both have flown; where the baseline has flown fewer
+    (`<baseline>_flights`), its mean stands for the rest: every flight has the same steps. worst_error_percent
+    is the worst of all outputs and flights, median_error_percent the median flight's worst output.
+    """
+    finished = flights[flights["completed"]]
+    walls = {str(model): group.set_index("flight")["wall_s"] for model, group in finished.groupby("model")}
+    errors = [column for column in flights.columns if column.endswith("_error_percent")]
+    rows = []
+    for model, group in flights.groupby("model", sort=False):
+        done = group[group["completed"]]
+        row: dict[str, object] = {
+            "model": model,
+            "simulations": len(group),
+            "wall_s_mean": done["wall_s"].mean(),
+            "wall_s_std": done["wall_s"].std(),
+        }
+        for baseline in BASELINES:
+            base = walls.get(baseline)
+            if base is not None:
+                everywhere = base.reindex(walls[str(model)].index).fillna(base.mean())
+                mean, spread = relative_percent(walls.get(str(model)), everywhere)
+            else:
+                mean, spread = float("nan"), float("nan")
+            row[f"relative_to_{baseline}_percent"] = mean
+            row[f"relative_to_{baseline}_std_percent"] = spread
+            row[f"{baseline}_flights"] = 0 if base is None else len(base)
+        worst = done[errors].max(axis=1) if errors else pd.Series(dtype=np.float64)
+        row["median_error_percent"] = worst.median()
+        row["worst_error_percent"] = worst.max()
+        row["diverged"] = int((~group["completed"]).sum())
+        row["paper_percent"] = PAPER_PERCENT if model == "network" else float("nan")
+        row["paper_std_percent"] = PAPER_STD_PERCENT if model == "network" else float("nan")
+        rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def exceedance_summary(exceedances: pd.DataFrame) -> pd.DataFrame:
+    """Per input: flights and samples outside the training limits, of how many, and the worst distance."""
+    grouped = exceedances.groupby("input", sort=False)
+    return pd.DataFrame(
+        {
+            "flights": grouped["flight"].nunique(),
+            "flights_outside": grouped["outside"].agg(lambda outside: int((outside > 0).sum())),
+            "samples": grouped["samples"].sum(),
+            "samples_outside": grouped["outside"].sum(),
+            "worst_half_intervals": grouped["worst"].max(),
+        }
+    ).reset_index()

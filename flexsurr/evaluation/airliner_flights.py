@@ -1,0 +1,117 @@
+"""Flights of the airliner by which models are compared: what they are, what they give, how far apart."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from flexsurr.aerodynamics.features import FEATURES
+from flexsurr.config.flight import CONTROL_NAMES, Control, FlightCondition, FlightSettings
+from flexsurr.flight.manoeuvres import doublet, fly
+from flexsurr.flight.model import features
+from flexsurr.flight.trim import Trim
+from flexsurr.simulation.rhs import Array
+from flexsurr.simulation.trajectory import Trajectory
+
+LONGITUDINAL = ("airspeed_m_s", "alpha_deg", "theta_deg", "q_deg_s")
+LATERAL = ("beta_deg", "phi_deg", "p_deg_s", "r_deg_s")
+# What each doublet is meant to move; the rest hardly moves, and its error says nothing.
+MOVED: dict[Control, tuple[str, ...]] = {"elevator": LONGITUDINAL, "aileron": LATERAL, "rudder": LATERAL}
+
+
+@dataclass(frozen=True)
+class Flight:
+    """A doublet from a trim."""
+
+    number: int
+    control: Control
+    condition: FlightCondition
+    amplitude_deg: float
+
+
+def random_flights(settings: FlightSettings) -> list[Flight]:
+    """Each doublet as often as the settings say, at random conditions and amplitudes.
+
+    Flight k's numbers come from `default_rng([seed, k])`: they don't depend on how many there are.
+    """
+    random = settings.random_flights
+    flights = []
+    for number in range(len(CONTROL_NAMES) * random.of_each_doublet):
+        draw = np.random.default_rng([random.seed, number])
+        mach, altitude, amplitude = (
+            float(draw.uniform(*limits)) for limits in (random.mach, random.altitude_m, random.amplitude_deg)
+        )
+        # neighbours are different doublets, so that the first few hold each of them
+        control = CONTROL_NAMES[number % len(CONTROL_NAMES)]
+        flights.append(Flight(number, control, FlightCondition(mach=mach, altitude_m=altitude), amplitude))
+    return flights
+
+
+def flown(trim: Trim, flight: Flight, settings: FlightSettings) -> Trajectory:
+    """The flight from its `trim`."""
+    pilot = doublet(flight.control, np.radians(flight.amplitude_deg), settings.doublet)
+    return fly(trim, pilot, settings.duration_s, settings.step_s)
+
+
+def outputs(trajectory: Trajectory) -> dict[str, Array]:
+    """What pilots read, over time: airspeed, angles and rates in degrees, altitude; and each η [kg^½ m]."""
+    x = trajectory.x
+    airspeed = np.linalg.norm(x[:, 6:9], axis=1)
+    angles = {
+        "alpha_deg": np.arctan2(x[:, 8], x[:, 6]),
+        "theta_deg": x[:, 4],
+        "q_deg_s": x[:, 10],
+        "beta_deg": np.arcsin(x[:, 7] / airspeed),
+        "phi_deg": x[:, 3],
+        "p_deg_s": x[:, 9],
+        "r_deg_s": x[:, 11],
+    }
+    result = {"airspeed_m_s": airspeed, "altitude_m": x[:, 2]}
+    result.update({name: np.degrees(values) for name, values in angles.items()})
+    etas = [name for name in trajectory.state_names if name.startswith("eta_") and "dot" not in name]
+    result.update({name: x[:, trajectory.state_names.index(name)] for name in etas})
+    return result
+
+
+def peak_errors(
+    reference: Trajectory, other: Trajectory, names: Sequence[str] | None = None
+) -> dict[str, float]:
+    """Largest difference of each output over the reference's largest change from its start [%].
+
+    NaN where the other flight ended early, or where the reference does not change.
+    """
+    exact, found = outputs(reference), outputs(other)
+    errors = {}
+    for name in names or tuple(exact):
+        peak = float(np.abs(exact[name] - exact[name][0]).max())
+        if len(found[name]) != len(exact[name]) or peak == 0.0:
+            errors[name] = float("nan")
+            continue
+        errors[name] = 100.0 * float(np.abs(found[name] - exact[name]).max()) / peak
+    return errors
+
+
+def limit_exceedances(
+    trim: Trim, flight: Flight, trajectory: Trajectory, settings: FlightSettings, low: Array, high: Array
+) -> pd.DataFrame:
+    """How often each input of a network left the limits (25,) of its training during a flight.
+
+    Columns: flight, control, input, samples, outside (samples), worst (how far beyond, in halves of the
+    interval).
+    """
+    pilot = doublet(flight.control, np.radians(flight.amplitude_deg), settings.doublet)
+    inputs = features(trim.model.with_doublet(pilot), trajectory.t, trajectory.x)
+    beyond = np.maximum(low - inputs, inputs - high)
+    # what rounding makes of a value on the limit itself is not outside
+    outside = beyond > 1e-9 * np.maximum(np.abs(low), np.abs(high))
+    return pd.DataFrame(
+        {
+            "flight": flight.number,
+            "control": flight.control,
+            "input": FEATURES,
+            "samples": len(inputs),
+            "outside": outside.sum(axis=0),
+            "worst": np.maximum(beyond.max(axis=0), 0.0) / (0.5 * (high - low)),
+        }
+    )

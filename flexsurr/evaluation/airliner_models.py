@@ -1,0 +1,61 @@
+"""The airliner in flight with each form of its aerodynamics: lattice rebuilt, frozen, quadratic, network."""
+
+from dataclasses import dataclass
+
+from flexsurr.aerodynamics.airframe import Airframe
+from flexsurr.aerodynamics.boundary import BoundaryCondition
+from flexsurr.aerodynamics.frozen import frozen
+from flexsurr.aerodynamics.mach_grid import mach_grid
+from flexsurr.aerodynamics.quadratic import quadratic
+from flexsurr.aerodynamics.vortex_lattice import rebuilt
+from flexsurr.config.aircraft import Aircraft
+from flexsurr.config.flight import FlightSettings
+from flexsurr.config.panels import PanelCounts
+from flexsurr.flight import FreeModes, free_modes, stick_model
+from flexsurr.flight.airliner import flexible_airframe
+from flexsurr.flight.model import FlightModel
+from flexsurr.simulation.mapping import CompiledMapping
+
+REFERENCE = "vlm_frozen"
+"""What the others are judged against: the lattice with frozen matrices, as exact as the rebuilt one."""
+
+_MACH_MARGIN = 0.05
+_LARGEST_MACH = 0.94
+
+
+@dataclass(frozen=True, eq=False)
+class Airliner:
+    """An aircraft with its modes, its airframe, and the settings of its flights."""
+
+    settings: FlightSettings
+    modes: FreeModes
+    airframe: Airframe
+
+    def flying(self, aerodynamics: CompiledMapping) -> FlightModel:
+        """The model of its flight with one aerodynamics."""
+        return FlightModel(self.modes, aerodynamics, chosen=self.settings.aerodynamic_modes)
+
+
+def airliner(aircraft: Aircraft, settings: FlightSettings, counts: PanelCounts | None = None) -> Airliner:
+    """The airliner of an aircraft file, flown by `settings`."""
+    modes = free_modes(stick_model(aircraft), settings.elastic_modes)
+    return Airliner(settings, modes, flexible_airframe(modes, counts, settings.aerodynamic_modes))
+
+
+def lattices(
+    plane: Airliner, boundary_condition: BoundaryCondition = "exact", with_rebuild: bool = True
+) -> dict[str, CompiledMapping]:
+    """The lattice's forms by name: vlm_rebuild (if asked for), vlm_frozen, quadratic.
+
+    The frozen ones know the Mach numbers of the settings and a little beyond. The quadratic form's boundary
+    condition is linear, whatever that of the others.
+    """
+    settings = plane.settings
+    machs = [*settings.envelope_mach, *settings.random_flights.mach, settings.condition.mach]
+    grid = mach_grid(max(min(machs) - _MACH_MARGIN, 0.0), min(max(machs) + _MACH_MARGIN, _LARGEST_MACH))
+    forms = {"vlm_rebuild": rebuilt(plane.airframe, boundary_condition)} if with_rebuild else {}
+    return {
+        **forms,
+        REFERENCE: frozen(plane.airframe, grid, boundary_condition),
+        "quadratic": quadratic(plane.airframe, grid),
+    }

@@ -1,0 +1,154 @@
+"""What the airliner's models are compared by: flights, errors, limits, modes, costs; and its figures."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from flexsurr.config.flight import FlightCondition, FlightSettings, RandomFlights
+from flexsurr.config.panels import PanelCounts
+from flexsurr.evaluation.airliner_cost import (
+    PAPER_PERCENT,
+    airliner_cost,
+    exceedance_summary,
+    fly_all,
+)
+from flexsurr.evaluation.airliner_flights import (
+    MOVED,
+    Flight,
+    flown,
+    limit_exceedances,
+    outputs,
+    peak_errors,
+    random_flights,
+)
+from flexsurr.evaluation.airliner_models import REFERENCE, Airliner
+from flexsurr.evaluation.airliner_modes import MODE_COLUMNS, airliner_modes
+from flexsurr.flight.airliner import flexible_airframe
+from flexsurr.flight.linear_aerodynamics import linear_aerodynamics
+from flexsurr.flight.trim import trim
+from flexsurr.report.airliner_flight_figures import figure_18, figure_19, figure_20, figure_21
+from flexsurr.report.airliner_geometry_figures import figure_16, figure_17, mode_shapes
+from flexsurr.report.style import save
+
+CRUISE = FlightCondition(mach=0.7, altitude_m=10000.0)
+
+
+@pytest.fixture(scope="module")
+def plane(gnba_modes):
+    settings = FlightSettings(
+        aircraft="gnba", duration_s=1.0, random_flights=RandomFlights(of_each_doublet=1, rebuild_flights=1)
+    )
+    coarse = PanelCounts(wing=(10, 2), horizontal_tail=(4, 2), vertical_tail=(4, 2))
+    return Airliner(settings, gnba_modes, flexible_airframe(gnba_modes, coarse))
+
+
+@pytest.fixture(scope="module")
+def surrogate(gnba_derivatives):
+    about, value, slopes = gnba_derivatives.kernel
+    return linear_aerodynamics(about, value, 1.01 * slopes)
+
+
+@pytest.fixture(scope="module")
+def trims(plane, gnba_derivatives, surrogate):
+    return [trim(plane.flying(mapping), CRUISE) for mapping in (gnba_derivatives, surrogate)]
+
+
+def test_random_flights_are_each_doublet_as_often_within_limits_whatever_their_number():
+    settings = FlightSettings(aircraft="gnba")
+    flights = random_flights(settings)
+    assert len(flights) == 90
+    assert pd.Series([flight.control for flight in flights]).value_counts().tolist() == [30, 30, 30]
+    assert all(0.65 <= flight.condition.mach <= 0.75 for flight in flights)
+    assert all(9000.0 <= flight.condition.altitude_m <= 11000.0 for flight in flights)
+    assert all(1.0 <= flight.amplitude_deg <= 5.0 for flight in flights)
+    fewer = FlightSettings(aircraft="gnba", random_flights=RandomFlights(of_each_doublet=2))
+    assert random_flights(fewer) == flights[:6]
+
+
+def test_a_flight_is_its_own_reference_and_errors_are_in_percent_of_the_peak(plane, trims):
+    exact, found = (flown(start, Flight(0, "elevator", CRUISE, 3.0), plane.settings) for start in trims)
+    assert set(peak_errors(exact, exact, MOVED["elevator"]).values()) == {0.0}
+    errors = peak_errors(exact, found, MOVED["elevator"])
+    q = np.degrees(exact.x[:, 10])
+    assert errors["q_deg_s"] == pytest.approx(
+        100.0 * np.abs(np.degrees(found.x[:, 10]) - q).max() / np.abs(q - q[0]).max()
+    )
+    assert 0.0 < errors["q_deg_s"] < 10.0
+    assert np.isnan(peak_errors(exact, exact, ["p_deg_s"])["p_deg_s"]) or np.abs(exact.x[:, 9]).max() > 0.0
+    assert outputs(exact)["airspeed_m_s"][0] == pytest.approx(np.linalg.norm(exact.x[0, 6:9]))
+
+
+def test_states_beyond_the_limits_of_training_are_counted_for_each_input(plane, trims):
+    start = trims[0]
+    flight = Flight(7, "elevator", CRUISE, 3.0)
+    run = flown(start, flight, plane.settings)
+    low, high = np.full(25, -1e6), np.full(25, 1e6)
+    nowhere = limit_exceedances(start, flight, run, plane.settings, low, high)
+    assert nowhere["outside"].sum() == 0
+    high[8] = np.radians(2.0)  # the left elevator's, which reaches 3 degrees
+    frame = limit_exceedances(start, flight, run, plane.settings, low, high).set_index("input")
+    assert frame.loc["delta_e_left", "outside"] == np.count_nonzero((run.t >= 0.5) & (run.t < 1.5))
+    assert frame["outside"].sum() == frame.loc["delta_e_left", "outside"]
+    summary = exceedance_summary(frame.reset_index()).set_index("input")
+    assert summary.loc["delta_e_left", "flights_outside"] == 1
+    assert summary.loc["delta_e_right", "flights_outside"] == 0
+
+
+def test_modes_of_two_aerodynamics_are_matched_by_name(trims):
+    frame = airliner_modes(*trims)
+    assert tuple(frame.columns[:5]) == MODE_COLUMNS
+    assert len(frame) == 13
+    same = airliner_modes(trims[0], trims[0])
+    assert same["error_percent"].max() == 0.0
+    exact = frame.set_index("mode").loc["short period"]
+    found = complex(exact["surrogate_real"], exact["surrogate_imag"])
+    reference = complex(exact["reference_real"], exact["reference_imag"])
+    assert exact["error_percent"] == pytest.approx(100.0 * abs(found - reference) / abs(reference))
+    assert 0.1 < exact["error_percent"] < 5.0
+
+
+def test_costs_are_relative_to_each_lattice_over_the_flights_both_flew(plane, gnba_derivatives, surrogate):
+    forms = {"vlm_rebuild": gnba_derivatives, REFERENCE: gnba_derivatives, "network": surrogate}
+    limits = (np.full(25, -1e6), np.full(25, 1e6))
+    flights, left = fly_all(plane, forms, random_flights(plane.settings), limits)
+    assert flights["model"].value_counts().to_dict() == {REFERENCE: 3, "network": 3, "vlm_rebuild": 1}
+    assert flights["completed"].all()
+    assert left["outside"].sum() == 0
+    cost = airliner_cost(flights).set_index("model")
+    walls = flights.pivot(index="flight", columns="model", values="wall_s")
+    expected = (100.0 * walls["network"] / walls[REFERENCE]).mean()
+    assert cost.loc["network", f"relative_to_{REFERENCE}_percent"] == pytest.approx(expected)
+    assert cost.loc["network", "vlm_rebuild_flights"] == 1
+    everywhere = (100.0 * walls["network"] / walls["vlm_rebuild"].mean()).mean()
+    assert cost.loc["network", "relative_to_vlm_rebuild_percent"] == pytest.approx(everywhere)
+    assert cost.loc["network", "paper_percent"] == PAPER_PERCENT
+    assert cost.loc["network", "worst_error_percent"] > cost.loc["network", "median_error_percent"] > 0.0
+    assert cost.loc["vlm_rebuild", "worst_error_percent"] != cost.loc["network", "worst_error_percent"]
+
+
+def test_a_flight_without_a_trim_is_left_out(plane, gnba_derivatives):
+    nowhere = Flight(0, "rudder", FlightCondition(mach=0.3, altitude_m=11000.0), 2.0)
+    flights, _ = fly_all(plane, {REFERENCE: gnba_derivatives}, [nowhere])
+    assert flights.empty
+
+
+def test_figures_are_drawn(plane, trims, tmp_path):
+    model = plane.modes.model
+    histories = {}
+    for name, start in zip((REFERENCE, "network"), trims, strict=True):
+        run = flown(start, Flight(0, "elevator", CRUISE, 3.0), plane.settings)
+        histories[name] = pd.DataFrame({"t_s": run.t, **outputs(run)})
+    figures = {
+        "figure_16": figure_16(model, plane.airframe.lattice),
+        "figure_17": figure_17(model, plane.modes.properties.centre_of_gravity),
+        "figure_18": figure_18(airliner_modes(*trims)),
+        "elastic_modes": mode_shapes(plane.modes, [1, 2]),
+        **{draw.__name__: draw(histories, (0.5, 1.5, 2.5)) for draw in (figure_19, figure_20, figure_21)},
+    }
+    for figure in figures.values():
+        figure.canvas.draw()
+    assert all(path.stat().st_size > 10_000 for path in save(figures["figure_18"], tmp_path / "figure_18"))
+    shown = [line for ax in figures["figure_18"].axes for line in ax.lines if line.get_marker() == "x"]
+    assert [len(line.get_xdata()) for line in shown] == [13, 5]
+    titles = [ax.get_title(loc="left") for ax in figures["figure_19"].axes]
+    assert all("of the peak" in title for title in titles)
