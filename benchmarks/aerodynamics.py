@@ -1,0 +1,107 @@
+"""What one evaluation of the airliner's aerodynamics costs, in each of its forms.
+
+Run alone on the machine:  python benchmarks/aerodynamics.py
+Timed within compiled code, as the equations of motion call it; the network also from Python, in NumPy and
+in torch, as it leaves its training. Weights are random: they make no difference.
+"""
+
+from pathlib import Path
+
+import numpy as np
+import torch
+from timing import Timing, compare, measure
+
+from flexsurr.aerodynamics.features import COEFFICIENTS, FEATURES
+from flexsurr.aerodynamics.frozen import frozen
+from flexsurr.aerodynamics.mach_grid import fixed_machs, mach_grid
+from flexsurr.aerodynamics.quadratic import quadratic
+from flexsurr.aerodynamics.sampling import draw_features, feature_intervals
+from flexsurr.aerodynamics.vortex_lattice import rebuilt
+from flexsurr.config.aircraft import load_aircraft
+from flexsurr.config.feature_limits import load_feature_limits
+from flexsurr.flight.airliner import flexible_airframe
+from flexsurr.flight.modes import free_modes
+from flexsurr.flight.stick_model import stick_model
+from flexsurr.simulation.mapping import CompiledMapping, evaluate_mapping
+from flexsurr.surrogates.coefficient_network import CoefficientNetwork, shapes_of
+from flexsurr.training.coefficient_fit import initial_weights
+from flexsurr.training.structured_normal_equations import CoefficientObjective
+
+AIRCRAFT = Path(__file__).parents[1] / "config" / "aircraft"
+HIDDEN = 75
+CALLS = {"rebuilt": 1, "frozen": 10, "frozen, one Mach number": 30}
+COMPILED_CALLS = 2000
+PYTHON_CALLS = 200
+SAMPLES = 3277
+
+
+def caller(form: CompiledMapping, u: np.ndarray, calls: int):
+    y, work = np.empty((calls, len(COEFFICIENTS))), np.empty(max(form.work_size, 1))
+    return lambda: evaluate_mapping(form.kernel, u[:calls], y, work)
+
+
+def random_network(low: np.ndarray, high: np.ndarray) -> CoefficientNetwork:
+    ones = np.ones(len(COEFFICIENTS))
+    weights = initial_weights(len(FEATURES), HIDDEN, len(COEFFICIENTS), seed=0)
+    return CoefficientNetwork(weights, HIDDEN, "tanh", low, high, -ones, ones, FEATURES, COEFFICIENTS)
+
+
+def in_torch(network: CoefficientNetwork, u: np.ndarray):
+    layers = torch.nn.Sequential(
+        torch.nn.Linear(len(FEATURES), HIDDEN), torch.nn.Tanh(), torch.nn.Linear(HIDDEN, len(COEFFICIENTS))
+    ).double()
+    x = torch.tensor(u)
+
+    @torch.no_grad()
+    def call():
+        for _ in range(PYTHON_CALLS):
+            layers(x)
+
+    return call
+
+
+def show(name: str, timing: Timing, calls: int, reference_s: float) -> None:
+    microseconds = 1e6 * timing.median_s / calls
+    relative = 100.0 * timing.median_s / calls / reference_s
+    print(f"{name:<32} {microseconds:>10.2f} µs {relative:>10.4f} %")
+
+
+def main() -> None:
+    torch.set_num_threads(1)
+    airframe = flexible_airframe(free_modes(stick_model(load_aircraft(AIRCRAFT / "gnba.yaml"))))
+    limits = load_feature_limits(AIRCRAFT / "gnba_limits.yaml")
+    low, high = feature_intervals(limits)
+    grid, one = mach_grid(limits.mach.low, limits.mach.high), fixed_machs([0.7])
+    network = random_network(low, high)
+    forms = {
+        "rebuilt": rebuilt(airframe),
+        "frozen": frozen(airframe, grid),
+        "frozen, one Mach number": frozen(airframe, one),
+        "quadratic": quadratic(airframe, grid),
+        "quadratic, one Mach number": quadratic(airframe, one),
+        "network, compiled": network.compiled(),
+    }
+    u = draw_features(low, high, seed=0, first=0, count=COMPILED_CALLS)
+    calls = {name: CALLS.get(name, COMPILED_CALLS) for name in forms}
+    timings = compare({name: caller(form, u, calls[name]) for name, form in forms.items()})
+    reference_s = timings["rebuilt"].median_s
+    print(f"{len(airframe.lattice)} panels; one evaluation, of the rebuilt lattice")
+    for name, timing in timings.items():
+        show(name, timing, calls[name], reference_s)
+    python = {
+        "network, NumPy": lambda: [network(u[0]) for _ in range(PYTHON_CALLS)],
+        "network, torch": in_torch(network, u[0]),
+    }
+    for name, timing in compare(python).items():
+        show(name, timing, PYTHON_CALLS, reference_s)
+    generator = np.random.default_rng(0)
+    x = generator.uniform(-1.0, 1.0, (SAMPLES, len(FEATURES)))
+    y = generator.uniform(-1.0, 1.0, (SAMPLES, len(COEFFICIENTS)))
+    objective = CoefficientObjective.of(x, y, HIDDEN, "tanh")
+    count = sum(int(np.prod(shape)) for shape in shapes_of(len(FEATURES), HIDDEN, len(COEFFICIENTS)))
+    timing = measure(lambda: objective.normal_equations(network.parameters), repeats=5, warmup=1)
+    print(f"\nnormal equations of {count} weights at {SAMPLES} samples: {timing}")
+
+
+if __name__ == "__main__":
+    main()
