@@ -4,6 +4,8 @@ from flexsurr.surrogates.activations import ACTIVATIONS
 from flexsurr.surrogates.compiled import CompiledSurrogate, compiled
 from flexsurr.surrogates.dissipative_hnn import DissipativeHNN
 from flexsurr.surrogates.hnn import HNN
+from flexsurr.surrogates.learned_load import LearnedLoad
+from flexsurr.surrogates.learned_map import LearnedMap, NetworkMap, PolynomialMap, load_map, save_map
 from flexsurr.surrogates.mlp import MLP
 from flexsurr.surrogates.network import Network
 from flexsurr.surrogates.polynomial import PolynomialHamiltonian
@@ -30,10 +32,14 @@ __all__ = [
     "DissipativeHNN",
     "FeatureScaling",
     "Hamiltonian",
+    "LearnedLoad",
+    "LearnedMap",
     "Network",
+    "NetworkMap",
     "NetworkPortHamiltonian",
     "PairScaling",
     "PolynomialHamiltonian",
+    "PolynomialMap",
     "PolynomialPortHamiltonian",
     "PortHamiltonian",
     "Scaling",
@@ -44,7 +50,9 @@ __all__ = [
     "compiled",
     "feature_scaling",
     "load",
+    "load_map",
     "load_model",
     "pair_scaling",
     "save",
+    "save_map",
 ]

@@ -4,7 +4,8 @@ from typing import TYPE_CHECKING, Any
 
 from flexsurr.training.dataset import Dataset, load_dataset, split_dataset
 from flexsurr.training.fitting import Fit, fit
-from flexsurr.training.losses import nmse
+from flexsurr.training.learned_maps import fit_network_map, fit_polynomial_map
+from flexsurr.training.losses import nmse, nmse_per_state
 from flexsurr.training.selection import select
 from flexsurr.training.sweep import expand, run_id
 
@@ -16,8 +17,11 @@ __all__ = [
     "Fit",
     "expand",
     "fit",
+    "fit_network_map",
+    "fit_polynomial_map",
     "load_dataset",
     "nmse",
+    "nmse_per_state",
     "run_id",
     "select",
     "split_dataset",

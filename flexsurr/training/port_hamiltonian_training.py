@@ -8,10 +8,12 @@ from flexsurr.surrogates.packed import pack, semidefinite_factor
 from flexsurr.training.dataset import Dataset
 from flexsurr.training.inverse_dynamics import NotPositiveDefinite, fit_port_hamiltonian
 from flexsurr.training.levenberg_marquardt import LevenbergMarquardt
+from flexsurr.training.normal_equations import NormalEquations
 from flexsurr.training.port_hamiltonian_objective import PortHamiltonianObjective
 
 INVERSE_EPOCHS = 60  # more of them no longer help the second stage
-BASE_DEGREE = 2
+INVERSE_WEIGHT = 100.0  # of the first stage's loss in the second
+BASE_DEGREE = 4
 FLOOR = 0.01  # of the mean mass matrix
 READOUT = 0.1  # of its diagonal, all neurons together
 SMALLEST = 1e-3  # eigenvalue of the mean mass matrix over the largest
@@ -20,7 +22,7 @@ SMALLEST = 1e-3  # eigenvalue of the mean mass matrix over the largest
 def untrained_port_hamiltonian(
     dataset: Dataset, hidden: tuple[int, ...], activation: str, seed: int
 ) -> NetworkPortHamiltonian:
-    """Random neurons about the mean mass matrix, springs and dampers of a quadratic fit by least squares.
+    """Random neurons about the mean mass matrix, springs and dampers of a polynomial fit by least squares.
 
     Whether M is even in q is taken from that fit.
     """
@@ -62,11 +64,32 @@ def _positive_definite(matrix: Array) -> Array:
     return nearest
 
 
+class Both:
+    """The field's loss, plus that of inverse dynamics times `INVERSE_WEIGHT`. Satisfies `SumOfSquares`."""
+
+    def __init__(self, inverse: PortHamiltonianObjective, forward: PortHamiltonianObjective) -> None:
+        self._inverse, self._forward = inverse, forward
+
+    def loss(self, parameters: Array) -> float:
+        """The weighted sum of both."""
+        return self._forward.loss(parameters) + INVERSE_WEIGHT * self._inverse.loss(parameters)
+
+    def normal_equations(self, parameters: Array) -> NormalEquations:
+        """The weighted sum of both."""
+        inverse, forward = (part.normal_equations(parameters) for part in (self._inverse, self._forward))
+        return NormalEquations(
+            forward.loss + INVERSE_WEIGHT * inverse.loss,
+            forward.gram + INVERSE_WEIGHT * inverse.gram,
+            forward.gradient + INVERSE_WEIGHT * inverse.gradient,
+        )
+
+
 class InverseThenForward:
-    """Levenberg–Marquardt on inverse dynamics, from where that ends on the field. Satisfies `Optimiser`.
+    """Levenberg–Marquardt on inverse dynamics, from where that ends on the field too. Satisfies `Optimiser`.
 
     The first is close to linear and finds its way from random weights; the second is what the field's error
-    asks for. Losses returned are those of the field.
+    asks for, and would by itself give away slow motions for stiff transients, whose rates are largest.
+    Losses returned are those of the field.
     """
 
     def __init__(
@@ -74,6 +97,7 @@ class InverseThenForward:
     ) -> None:
         self.finished = ""
         self._forward = forward
+        self._both = Both(inverse, forward)
         self._done = 0
         self._is_forward = False
         self._method = LevenbergMarquardt(inverse, parameters)
@@ -85,18 +109,17 @@ class InverseThenForward:
 
     def epoch(self) -> float:
         """One accepted step of the stage it is in; the field's loss after it."""
-        loss = self._method.epoch()
+        self._method.epoch()
         self._done += 1
         if self._is_forward:
             self.finished = self._method.finished
-            return loss
-        if self._done >= INVERSE_EPOCHS or self._method.finished:
+        elif self._done >= INVERSE_EPOCHS or self._method.finished:
             self._begin_forward()
         return self._forward.loss(self.parameters)
 
     def _begin_forward(self) -> None:
         self._is_forward = True
-        self._method = LevenbergMarquardt(self._forward, self.parameters)
+        self._method = LevenbergMarquardt(self._both, self.parameters)
 
     def state(self) -> dict[str, Array]:
         """The stage and its method's state."""

@@ -1,0 +1,128 @@
+"""Any compiled model under a load whose generalised forces are learned: no kinematics are computed.
+
+A load of fixed shape follows one history, F(t) = s(t) f. With r̂(η) the learned positions, Q = s ∂(r̂ · f)/∂η
+is the gradient of one scalar potential, which the map is contracted to before it is compiled.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+
+from flexsurr.simulation.rhs import Array, CompiledModel, evaluate, implements_rhs, rhs
+from flexsurr.surrogates.learned_map import LearnedMap
+from flexsurr.surrogates.potentials import add_gradient
+
+
+class History(Protocol):
+    """The factor s(t) of a load: sin(ω t + phase) from start to end, else 0."""
+
+    @property
+    def start_s(self) -> float:
+        """When it begins [s]; may be −∞."""
+        ...
+
+    @property
+    def end_s(self) -> float:
+        """When it ends [s]; may be ∞."""
+        ...
+
+    @property
+    def frequency_rad_s(self) -> float:
+        """ω [rad/s]."""
+        ...
+
+    @property
+    def phase_rad(self) -> float:
+        """Phase at t = 0 [rad]."""
+        ...
+
+
+class LearnedLoadKernel(NamedTuple):
+    """A model's kernel, a potential's, and the history's numbers."""
+
+    model: Any
+    potential: Any
+    start: float
+    end: float
+    frequency: float
+    phase: float
+
+
+@implements_rhs(LearnedLoadKernel, inline=False)
+def _learned_load(kernel, t, x, dx, work):
+    rhs(kernel.model, t, x, dx, work)
+    if kernel.start <= t < kernel.end:
+        add_gradient(kernel.potential, math.sin(kernel.frequency * t + kernel.phase), x, dx, work)
+
+
+@dataclass(frozen=True, eq=False)
+class LearnedLoad:
+    """A CompiledModel: `model`, whose states are (η, p), under a load on the learned positions.
+
+    `force` (m,) is what acts on each output of `positions` at a factor of 1: [N] on positions [m], zero on
+    other outputs. Raises ValueError where their numbers don't fit.
+    """
+
+    model: CompiledModel
+    positions: LearnedMap
+    force: Array
+    history: History
+
+    def __post_init__(self) -> None:
+        if self.force.shape != (len(self.positions.output_names),):
+            raise ValueError(
+                f"{len(self.positions.output_names)} outputs take as many forces, not {self.force.shape}"
+            )
+        if 2 * self.positions.scales.size != len(self.model.state_names):
+            raise ValueError(
+                f"a map of {self.positions.scales.size} coordinates does not fit the states"
+                f" {', '.join(self.model.state_names)}"
+            )
+
+    @property
+    def state_names(self) -> tuple[str, ...]:
+        """Those of the model."""
+        return self.model.state_names
+
+    @property
+    def state_units(self) -> tuple[str, ...]:
+        """Those of the model."""
+        return self.model.state_units
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Times [s] at which the load, or the model itself, may jump."""
+        ends = (time for time in (self.history.start_s, self.history.end_s) if math.isfinite(time))
+        return tuple(sorted({*self.model.breakpoints, *ends}))
+
+    @property
+    def energy(self) -> Any:
+        """The model's own energy, without the work of the load; AttributeError where it has none."""
+        return self.model.energy  # type: ignore[attr-defined]  # not every CompiledModel has one
+
+    @cached_property
+    def _compiled(self) -> tuple[NamedTuple, int]:
+        potential, size = self.positions.contracted(self.force).potential()
+        history = self.history
+        times = history.start_s, history.end_s, history.frequency_rad_s, history.phase_rad
+        return LearnedLoadKernel(self.model.kernel, potential, *map(float, times)), size
+
+    @property
+    def kernel(self) -> NamedTuple:
+        """The model's kernel and the potential's in one."""
+        return self._compiled[0]
+
+    @property
+    def work_size(self) -> int:
+        """Model and load use the same scratch, one after the other."""
+        return max(self.model.work_size, self._compiled[1])
+
+    def derivative(self, t: float, x: Array) -> Array:
+        """ẋ (2r,) at time t [s] and states x (2r,)."""
+        x = np.ascontiguousarray(x, dtype=np.float64)
+        dx = np.empty_like(x)
+        evaluate(self.kernel, float(t), x, dx, np.empty(self.work_size))
+        return dx

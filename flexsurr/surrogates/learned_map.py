@@ -1,0 +1,222 @@
+"""Learned kinematics: coordinates η to positions and to the sine and cosine of a twist.
+
+The Jacobian of the map gives generalised forces, Q = (∂r̂/∂η)ᵀ F, which do the work of F along the learned
+positions exactly; the same map gives the outputs. Angles are learned as sine and cosine, for they jump
+themselves where they pass ±π.
+"""
+
+import json
+import zipfile
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import ClassVar, NamedTuple, Self
+
+import numpy as np
+
+from flexsurr.simulation.rhs import Array
+from flexsurr.storage import replacing
+from flexsurr.surrogates.activations import ACTIVATIONS
+from flexsurr.surrogates.monomials import Exponents, differentiate, evaluate_monomials, factors
+from flexsurr.surrogates.potentials import NetworkPotential, PolynomialPotential
+from flexsurr.surrogates.saved import SurrogateFileError
+
+FORMAT = "flexsurr learned map 1"
+
+
+@dataclass(frozen=True, eq=False)
+class LearnedMap(ABC):
+    """`output_names` in their order; a subclass maps η over `scales` (r,), the reach of each coordinate."""
+
+    scales: Array
+    output_names: tuple[str, ...]
+
+    kind: ClassVar[str]
+
+    @abstractmethod
+    def __call__(self, eta: Array) -> Array:
+        """Outputs at coordinates, (..., r) -> (..., m)."""
+
+    @abstractmethod
+    def jacobian(self, eta: Array) -> Array:
+        """∂(outputs)/∂η, (..., r) -> (..., m, r)."""
+
+    @abstractmethod
+    def contracted(self, weights: Array) -> Self:
+        """The map to the one number Σ weights_i outputs_i; `weights` (m,).
+
+        For forces of a fixed shape F on the mapped positions this is the potential whose gradient is Q.
+        """
+
+    @abstractmethod
+    def potential(self) -> tuple[NamedTuple, int]:
+        """Compiled form of a map to one number, and the size of its workspace; ValueError for another."""
+
+    @abstractmethod
+    def arrays(self) -> dict[str, Array]:
+        """What makes this map, by the names of its attributes."""
+
+    def generalised_force(self, eta: Array, force: Array) -> Array:
+        """Q = (∂r̂/∂η)ᵀ F, (..., r), for forces (m,) on the outputs; zero for those that are no positions."""
+        weighted: Array = np.einsum("...mk,m->...k", self.jacobian(eta), force)
+        return weighted
+
+    def angle(self, eta: Array, sine: str, cosine: str) -> Array:
+        """The angle (...) [rad] whose sine and cosine are the outputs of these names."""
+        outputs = self(eta)
+        return np.arctan2(
+            outputs[..., self.output_names.index(sine)], outputs[..., self.output_names.index(cosine)]
+        )
+
+    def _check_outputs(self, count: int) -> None:
+        if count != len(self.output_names):
+            raise ValueError(f"{count} outputs do not fit the names {self.output_names}")
+        if self.scales.ndim != 1 or not np.all(self.scales > 0.0):
+            raise ValueError(f"the scales of the coordinates must be positive, not {self.scales}")
+
+    def _check_potential(self) -> None:
+        if len(self.output_names) != 1:
+            raise ValueError("only a map to one number is a potential: contract it with forces first")
+
+
+@dataclass(frozen=True, eq=False)
+class PolynomialMap(LearnedMap):
+    """Σ_k c_k φ_k(η / scales): `exponents` (count, r), the constant first; `coefficients` (count, m)."""
+
+    exponents: Exponents
+    coefficients: Array
+
+    kind: ClassVar[str] = "polynomial"
+
+    def __post_init__(self) -> None:
+        factors(self.exponents)
+        if len(self.coefficients) != len(self.exponents) or self.exponents.shape[1] != self.scales.size:
+            raise ValueError("a coefficient for each monomial, and an exponent for each coordinate")
+        self._check_outputs(self.coefficients.shape[1])
+
+    def __call__(self, eta: Array) -> Array:
+        """Outputs at coordinates, (..., r) -> (..., m)."""
+        return evaluate_monomials(self.exponents, eta / self.scales) @ self.coefficients
+
+    @cached_property
+    def _derivative(self) -> tuple[Exponents, Array]:
+        lowered, tensor = differentiate(self.exponents)
+        return lowered, np.einsum("kli,im->lmk", tensor, self.coefficients) / self.scales
+
+    def jacobian(self, eta: Array) -> Array:
+        """∂(outputs)/∂η, (..., r) -> (..., m, r)."""
+        lowered, coefficients = self._derivative
+        return np.einsum("...l,lmk->...mk", evaluate_monomials(lowered, eta / self.scales), coefficients)
+
+    def contracted(self, weights: Array) -> "PolynomialMap":
+        """The map to Σ weights_i outputs_i; `weights` (m,)."""
+        combined = (self.coefficients @ weights)[:, None]
+        return PolynomialMap(self.scales, ("potential",), self.exponents, combined)
+
+    def potential(self) -> tuple[NamedTuple, int]:
+        """Monomials as products, and their adjoints."""
+        self._check_potential()
+        parents, of_factors = factors(self.exponents)
+        kernel = PolynomialPotential(
+            1.0 / self.scales,
+            parents.astype(np.uint64),
+            of_factors.astype(np.uint64),
+            self.coefficients[:, 0].copy(),
+        )
+        r = self.scales.size
+        return kernel, r * (r + 3) + 2 * len(self.exponents)
+
+    def arrays(self) -> dict[str, Array]:
+        """What makes this map."""
+        return {
+            "scales": self.scales,
+            "exponents": self.exponents.astype(np.float64),
+            "coefficients": self.coefficients,
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class NetworkMap(LearnedMap):
+    """W₂ᵀ σ(W₁ᵀ η / scales + b₁) + b₂: weights (r, n), biases (n,), readout (n, m), constant (m,)."""
+
+    activation: str
+    weights: Array
+    biases: Array
+    readout: Array
+    constant: Array
+
+    kind: ClassVar[str] = "network"
+
+    def __post_init__(self) -> None:
+        if self.activation not in ACTIVATIONS:
+            raise ValueError(f"activation {self.activation!r} is not one of {', '.join(ACTIVATIONS)}")
+        n = self.biases.size
+        shapes = self.weights.shape, self.readout.shape, self.constant.shape
+        if shapes != ((self.scales.size, n), (n, self.constant.size), (self.constant.size,)):
+            raise ValueError(f"weights of shapes {shapes} do not fit {n} neurons")
+        self._check_outputs(self.constant.size)
+
+    def __call__(self, eta: Array) -> Array:
+        """Outputs at coordinates, (..., r) -> (..., m)."""
+        z = eta / self.scales @ self.weights + self.biases
+        return ACTIVATIONS[self.activation].value(z) @ self.readout + self.constant
+
+    def jacobian(self, eta: Array) -> Array:
+        """∂(outputs)/∂η, (..., r) -> (..., m, r)."""
+        slopes = ACTIVATIONS[self.activation].slope(eta / self.scales @ self.weights + self.biases)
+        weights = self.weights / self.scales[:, None]
+        return np.einsum("kn,...n,nm->...mk", weights, slopes, self.readout, optimize=True)
+
+    def contracted(self, weights: Array) -> "NetworkMap":
+        """The map to Σ weights_i outputs_i; `weights` (m,)."""
+        return NetworkMap(
+            self.scales,
+            ("potential",),
+            self.activation,
+            self.weights,
+            self.biases,
+            (self.readout @ weights)[:, None],
+            np.array([self.constant @ weights]),
+        )
+
+    def potential(self) -> tuple[NamedTuple, int]:
+        """A single loop over neurons for each coordinate."""
+        self._check_potential()
+        layer = np.concatenate([(self.weights / self.scales[:, None]).ravel(), self.biases])
+        tag = ACTIVATIONS[self.activation].tag
+        return NetworkPotential(tag, layer, self.readout[:, 0].copy()), self.scales.size + self.biases.size
+
+    def arrays(self) -> dict[str, Array]:
+        """What makes this map."""
+        names = ("scales", "weights", "biases", "readout", "constant")
+        return {name: getattr(self, name) for name in names}
+
+
+def save_map(learned: LearnedMap, path: str | Path) -> None:
+    """Write `learned` to `path` whole: beside its place first, then moved there."""
+    header = {"format": FORMAT, "kind": learned.kind, "output_names": learned.output_names}
+    if isinstance(learned, NetworkMap):
+        header["activation"] = learned.activation
+    with replacing(Path(path)) as beside, beside.open("wb") as file:
+        np.savez(file, allow_pickle=False, header=np.array(json.dumps(header)), **learned.arrays())
+
+
+def load_map(path: str | Path) -> LearnedMap:
+    """The map in `path`. Raises SurrogateFileError for a damaged or foreign file, OSError for none."""
+    try:
+        with Path(path).open("rb") as content, np.load(content, allow_pickle=False) as file:
+            arrays = dict(file)
+        header = json.loads(str(arrays.pop("header")))
+        if header["format"] != FORMAT:
+            raise SurrogateFileError(f"{path}: format {header['format']!r}, expected {FORMAT!r}")
+        arrays = {name: np.ascontiguousarray(array, dtype=np.float64) for name, array in arrays.items()}
+        names = tuple(header["output_names"])
+        if header["kind"] == PolynomialMap.kind:
+            exponents = arrays.pop("exponents").astype(np.int64)
+            return PolynomialMap(output_names=names, exponents=exponents, **arrays)
+        return NetworkMap(output_names=names, activation=header["activation"], **arrays)
+    except FileNotFoundError:
+        raise
+    except (OSError, EOFError, KeyError, TypeError, ValueError, AttributeError, zipfile.BadZipFile) as error:
+        raise SurrogateFileError(f"{path}: not a learned map of flexsurr ({error})") from None

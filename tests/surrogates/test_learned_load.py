@@ -1,0 +1,157 @@
+"""Learned kinematics and the loads made of them: virtual work, and the same compiled."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from random_surrogates import HAMILTONIANS, PORT_HAMILTONIANS, network
+
+from flexsurr.config.study import Integrator
+from flexsurr.simulation import simulate
+from flexsurr.surrogates import (
+    HNN,
+    LearnedLoad,
+    NetworkMap,
+    PolynomialMap,
+    SurrogateFileError,
+    compiled,
+    load_map,
+    save_map,
+)
+from flexsurr.surrogates.monomials import monomials_to_degree
+
+NAMES = ("x", "y", "z", "sin", "cos")
+SEEDS = st.integers(0, 2**32 - 1)
+SCALES = np.array([0.4, 2.0, 0.1])
+
+
+@dataclass(frozen=True)
+class Sine:
+    """A history."""
+
+    start_s: float = 0.1
+    end_s: float = 0.7
+    frequency_rad_s: float = 9.0
+    phase_rad: float = 0.3
+
+
+def polynomial(seed=0):
+    exponents = np.concatenate([np.zeros((1, 3), dtype=np.int64), monomials_to_degree(3, 4)])
+    coefficients = np.random.default_rng(seed).normal(size=(len(exponents), 5))
+    return PolynomialMap(SCALES, NAMES, exponents, coefficients)
+
+
+def network_map(seed=0):
+    generator = np.random.default_rng(seed)
+    shapes = (3, 6), (6,), (6, 5), (5,)
+    return NetworkMap(SCALES, NAMES, "atan", *(generator.normal(size=shape) for shape in shapes))
+
+
+MAPS = {"polynomial": polynomial, "network": network_map}
+EACH = pytest.mark.parametrize("kind", MAPS)
+
+
+@EACH
+@given(seed=SEEDS)
+def test_forces_do_the_work_of_the_learned_displacements(kind, seed):
+    """∫ Q · dη along a path is F · (r̂(end) − r̂(start)): Gauss–Legendre over a straight path."""
+    learned = MAPS[kind](seed)
+    generator = np.random.default_rng(seed)
+    start, end = generator.uniform(-0.7, 0.7, (2, 3)) * SCALES
+    force = generator.normal(size=5)
+    nodes, weights = np.polynomial.legendre.leggauss(60)
+    along = start + 0.5 * (nodes[:, None] + 1.0) * (end - start)
+    work = 0.5 * weights @ (learned.generalised_force(along, force) @ (end - start))
+    assert work == pytest.approx(force @ (learned(end) - learned(start)), abs=1e-6)
+
+
+@EACH
+@given(seed=SEEDS)
+def test_contracted_it_is_the_potential_of_the_force(kind, seed):
+    learned = MAPS[kind](seed)
+    generator = np.random.default_rng(seed)
+    eta, force = generator.uniform(-1.0, 1.0, (4, 3)) * SCALES, generator.normal(size=5)
+    potential = learned.contracted(force)
+    np.testing.assert_allclose(potential(eta)[:, 0], learned(eta) @ force, atol=1e-10)
+    np.testing.assert_allclose(
+        potential.jacobian(eta)[:, 0], learned.generalised_force(eta, force), atol=1e-9
+    )
+
+
+@EACH
+def test_compiled_it_adds_the_force_while_it_acts(kind):
+    learned, force = MAPS[kind](), np.array([1.0, -2.0, 30.0, 0.0, 0.0])
+    model = compiled(PORT_HAMILTONIANS["even"])
+    loaded = LearnedLoad(model, learned, force, Sine())
+    assert loaded.breakpoints == (0.1, 0.7)
+    assert (loaded.state_names, loaded.state_units) == (model.state_names, model.state_units)
+    x = np.concatenate([0.5 * SCALES, [0.3, -1.0, 2.0]])
+    np.testing.assert_allclose(loaded.energy(x), model.energy(x))
+    for t, factor in ((0.0, 0.0), (0.1, np.sin(1.2)), (0.4, np.sin(3.9)), (0.7, 0.0), (2.0, 0.0)):
+        added = loaded.derivative(t, x) - model.derivative(t, x)
+        np.testing.assert_allclose(added[:3], 0.0)
+        expected = factor * learned.generalised_force(x[:3], force)
+        np.testing.assert_allclose(added[3:], expected, rtol=1e-10, atol=1e-9)
+
+
+def test_it_works_on_what_it_loads():
+    """The energy that an undamped model gains is ∫ Q · q̇ dt, under a potential of one coordinate."""
+    exponents = np.array([[0], [1], [2], [3]])
+    learned = PolynomialMap(np.array([0.3]), ("z",), exponents, np.array([[0.1], [1.0], [-0.4], [0.3]]))
+    constant = Sine(start_s=-np.inf, end_s=np.inf, frequency_rad_s=0.0, phase_rad=0.5 * np.pi)
+    model = LearnedLoad(compiled(HAMILTONIANS["even"]), learned, np.array([5.0]), constant)
+    assert model.breakpoints == ()
+    t = np.linspace(0.0, 0.01, 5)
+    x = simulate(model, t, np.array([0.1, 0.5]), Integrator(method="rk4", step_s=5e-5)).x
+    balance = model.energy(x) - 5.0 * learned(x[:, :1])[:, 0]
+    np.testing.assert_allclose(balance, balance[0], rtol=1e-8)
+    assert abs(model.energy(x[-1]) - model.energy(x[0])) > 1e-3
+
+
+def test_an_angle_is_whole_where_it_jumps():
+    """Sine and cosine are smooth; the angle between them is given in (−π, π]."""
+    exponents = np.array([[0], [1]])
+    learned = PolynomialMap(np.array([1.0]), ("s", "c"), exponents, np.array([[0.0, -1.0], [0.1, 0.0]]))
+    found = learned.angle(np.array([[-0.5], [0.5]]), "s", "c")
+    np.testing.assert_allclose(found, [-np.pi + np.arctan(0.05), np.pi - np.arctan(0.05)])
+
+
+@EACH
+def test_round_trip_and_damage(kind, tmp_path):
+    learned, path = MAPS[kind](), tmp_path / "map.npz"
+    save_map(learned, path)
+    loaded = load_map(path)
+    eta = 0.5 * SCALES
+    assert (type(loaded), loaded.output_names) == (type(learned), learned.output_names)
+    np.testing.assert_array_equal(loaded(eta), learned(eta))
+    content = path.read_bytes()
+    for size in range(0, len(content), 97):
+        path.write_bytes(content[:size])
+        with pytest.raises(SurrogateFileError, match=r"map\.npz: "):
+            load_map(path)
+
+
+@pytest.mark.parametrize(
+    ("changes", "reason"),
+    [
+        ({"output_names": ("x",)}, "5 outputs do not fit"),
+        ({"scales": np.array([1.0, 0.0, 1.0])}, "must be positive"),
+        ({"activation": "relu"}, "'relu' is not one of"),
+        ({"biases": np.zeros(2)}, "do not fit 2 neurons"),
+    ],
+)
+def test_what_makes_no_map_is_refused(changes, reason):
+    with pytest.raises(ValueError, match=reason):
+        replace(network_map(), **changes)
+
+
+def test_loads_that_do_not_fit_are_refused():
+    model = compiled(network(HNN, 6, (3,), "atan"))
+    with pytest.raises(ValueError, match="5 outputs take as many forces"):
+        LearnedLoad(model, polynomial(), np.zeros(3), Sine())
+    with pytest.raises(ValueError, match="3 coordinates does not fit the states"):
+        LearnedLoad(compiled(HAMILTONIANS["even"]), polynomial(), np.zeros(5), Sine())
+    with pytest.raises(ValueError, match="contract it with forces first"):
+        polynomial().potential()
