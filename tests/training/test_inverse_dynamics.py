@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from oscillator import STIFFNESS, free_responses
 
 from flexsurr.config.sweep import Trial
 from flexsurr.surrogates import PairScaling, PolynomialPortHamiltonian
@@ -77,6 +78,16 @@ def test_odd_powers_are_left_out_where_there_are_none():
 def test_without_damping_none_is_found():
     found = fit_port_hamiltonian(sampled(truth_of(1, damped=False)), 4)
     assert np.max(np.abs(found.scaled_damping)) < 1e-12
+
+
+def test_an_oscillators_trajectories():
+    """M = 0.18 + 0.1 q², K = 555, no damping: exactly of this form, so found from a few responses."""
+    dataset = free_responses(4, 30)
+    found = fit_port_hamiltonian(dataset, 2)
+    np.testing.assert_allclose(found.mass_matrix(np.array([0.3]))[0, 0], 0.18 + 0.1 * 0.3**2, rtol=1e-9)
+    np.testing.assert_allclose(found.stiffness, [[STIFFNESS]], rtol=1e-9)
+    assert found.damping[0, 0] < 1e-9
+    assert nmse(found.derivative(0.0, dataset.x_validation), dataset.dx_validation) < 1e-18
 
 
 def test_fed_in_pieces_it_is_the_same(monkeypatch):
