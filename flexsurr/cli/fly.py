@@ -12,16 +12,23 @@ from flexsurr.cli.frames import write_frame
 from flexsurr.config.flight import CONTROL_NAMES, FlightCondition
 from flexsurr.evaluation.airliner_flights import Flight, flown, outputs
 from flexsurr.evaluation.airliner_models import REFERENCE
-from flexsurr.evaluation.airliner_modes import MODE_COLUMNS, airliner_modes
+from flexsurr.evaluation.airliner_modes import MODE_COLUMNS, airliner_modes, left_out_modes
 from flexsurr.flight.trim import TrimNotFound, trim, trim_envelope
 
 log = logging.getLogger(__name__)
 
 
 def main(
-    job: Job, selection: Path, runs: Path, modes: Path, table: Path, doublets: Path, trims: Path
+    job: Job,
+    selection: Path,
+    runs: Path,
+    modes: Path,
+    table: Path,
+    left_out: Path,
+    doublets: Path,
+    trims: Path,
 ) -> None:
-    """Write the modes, airliner_modes.csv, the doublets' time histories, and the trims over the envelope."""
+    """Write modes and what those left out change, the doublets' time histories, trims over the envelope."""
     plane = airliner_of(job)
     settings = plane.settings
     forms = forms_of(job, plane, selected_network(selection, runs), with_rebuild=False)
@@ -32,6 +39,7 @@ def main(
     frame = airliner_modes(cruise[REFERENCE], cruise["network"])
     write_frame(modes, frame)
     write_frame(table, frame[list(MODE_COLUMNS)])
+    write_frame(left_out, left_out_modes(plane))
     histories = []
     for control in CONTROL_NAMES:
         flight = Flight(0, control, settings.condition, settings.doublet_deg)
@@ -71,6 +79,7 @@ if __name__ == "__main__":
             "runs": "the folder of all runs",
             "modes": "eigenvalues with their errors",
             "table": "airliner_modes.csv",
+            "left_out": "what the modes change that the aerodynamics does not know",
             "doublets": "time histories",
             "trims": "over the envelope",
         },

@@ -5,8 +5,10 @@ from pathlib import Path
 from flexsurr.cli.command import Job, command
 from flexsurr.cli.flying import airliner_of, forms_of, selected_network
 from flexsurr.cli.frames import write_frame
-from flexsurr.evaluation.airliner_cost import airliner_cost, exceedance_summary, fly_all
+from flexsurr.evaluation.airliner_cost import OfEachFlight, airliner_cost, exceedance_summary, fly_all
 from flexsurr.evaluation.airliner_flights import random_flights
+from flexsurr.evaluation.airliner_models import ONE_MACH, frozen_at
+from flexsurr.simulation.mapping import CompiledMapping
 
 
 def main(
@@ -15,7 +17,10 @@ def main(
     """Write every flight, every exceedance, airliner_cost.csv and airliner_limits.csv."""
     plane = airliner_of(job)
     network = selected_network(selection, runs)
-    forms = forms_of(job, plane, network, with_rebuild=True)
+    forms: dict[str, CompiledMapping | OfEachFlight] = {
+        ONE_MACH: lambda condition: frozen_at(plane, condition.mach, job["boundary_condition"]),
+        **forms_of(job, plane, network, with_rebuild=True),
+    }
     flown, left = fly_all(
         plane, forms, random_flights(plane.settings), (network.input_low, network.input_high)
     )

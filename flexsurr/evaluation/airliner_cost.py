@@ -1,14 +1,15 @@
 """What a flight costs with the network and with each form of the lattice, and how far they fly apart."""
 
 import logging
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 import numpy as np
 import pandas as pd
 
+from flexsurr.config.flight import FlightCondition
 from flexsurr.evaluation.airliner_flights import MOVED, Flight, flown, limit_exceedances, peak_errors
-from flexsurr.evaluation.airliner_models import REFERENCE, Airliner
+from flexsurr.evaluation.airliner_models import ONE_MACH, REFERENCE, Airliner
 from flexsurr.evaluation.ratios import relative_percent
 from flexsurr.evaluation.timing import wall_time
 from flexsurr.flight.trim import Trim, TrimNotFound, trim
@@ -19,23 +20,25 @@ from flexsurr.simulation.trajectory import Trajectory
 log = logging.getLogger(__name__)
 
 REBUILT = "vlm_rebuild"
-BASELINES = (REBUILT, REFERENCE, "quadratic")
+BASELINES = (REBUILT, REFERENCE, ONE_MACH, "quadratic")
 # A flight with these takes seconds: a steady measure by itself.
-SLOW = (REBUILT, REFERENCE)
+SLOW = (REBUILT, REFERENCE, ONE_MACH)
+OfEachFlight = Callable[[FlightCondition], CompiledMapping]
 # The study's table: the network's flights over those with the lattice rebuilt, mean and standard deviation.
 PAPER_PERCENT, PAPER_STD_PERCENT = 0.995, 0.025
 
 
 def fly_all(
     plane: Airliner,
-    aerodynamics: Mapping[str, CompiledMapping],
+    aerodynamics: Mapping[str, CompiledMapping | OfEachFlight],
     flights: Sequence[Flight],
     limits: tuple[Array, Array] | None = None,
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Time every flight with every aerodynamics, and compare its outputs with those of `REFERENCE`.
 
     Each flies from its own trim. The rebuilt lattice flies the first few only, as the settings say. A flight
-    without a trim is left out, and the log says so. `limits` are those of the network's training.
+    without a trim is left out, and the log says so. An aerodynamics may be a function that makes it for each
+    flight. `limits` are those of the network's training.
 
     First frame, a row per model and flight: model, flight, control, mach, altitude_m, amplitude_deg, wall_s,
     completed, and for each output that the doublet moves <output>_error_percent. Second:
@@ -46,9 +49,10 @@ def fly_all(
     exceedances: list[pd.DataFrame] = []
     for place, flight in enumerate(flights):
         flown_by: dict[str, tuple[Trim, Trajectory]] = {}
-        for model, mapping in aerodynamics.items():
+        for model, form in aerodynamics.items():
             if model == REBUILT and place >= settings.random_flights.rebuild_flights:
                 continue
+            mapping = form if isinstance(form, CompiledMapping) else form(flight.condition)
             try:
                 start = trim(plane.flying(mapping), flight.condition, settings.limits)
             except TrimNotFound as error:
@@ -71,9 +75,11 @@ def fly_all(
                     "completed": trajectory.completed,
                 }
             )
-            if model != REFERENCE and REFERENCE in flown_by:
-                errors = peak_errors(flown_by[REFERENCE][1], trajectory, MOVED[flight.control])
-                rows[-1].update({f"{name}_error_percent": error for name, error in errors.items()})
+        for row in rows[-len(flown_by) :] if REFERENCE in flown_by else []:
+            if (model := str(row["model"])) != REFERENCE:
+                pair = flown_by[REFERENCE][1], flown_by[model][1]
+                errors = peak_errors(*pair, MOVED[flight.control])
+                row.update({f"{name}_error_percent": error for name, error in errors.items()})
         if limits is not None and "network" in flown_by:
             start, trajectory = flown_by["network"]
             exceedances.append(limit_exceedances(start, flight, trajectory, settings, *limits))

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from flexsurr.aerodynamics.airframe import Airframe
 from flexsurr.aerodynamics.boundary import BoundaryCondition
 from flexsurr.aerodynamics.frozen import frozen
-from flexsurr.aerodynamics.mach_grid import mach_grid
+from flexsurr.aerodynamics.mach_grid import fixed_machs, mach_grid
 from flexsurr.aerodynamics.quadratic import quadratic
 from flexsurr.aerodynamics.vortex_lattice import rebuilt
 from flexsurr.config.aircraft import Aircraft
@@ -18,6 +18,9 @@ from flexsurr.simulation.mapping import CompiledMapping
 
 REFERENCE = "vlm_frozen"
 """What the others are judged against: the lattice with frozen matrices, as exact as the rebuilt one."""
+
+ONE_MACH = "vlm_frozen_one_mach"
+"""The lattice frozen at the Mach number of each flight's trim: see `frozen_at`."""
 
 _MACH_MARGIN = 0.05
 _LARGEST_MACH = 0.94
@@ -40,6 +43,16 @@ def airliner(aircraft: Aircraft, settings: FlightSettings, counts: PanelCounts |
     """The airliner of an aircraft file, flown by `settings`."""
     modes = free_modes(stick_model(aircraft), settings.elastic_modes)
     return Airliner(settings, modes, flexible_airframe(modes, counts, settings.aerodynamic_modes))
+
+
+def frozen_at(
+    plane: Airliner, mach: float, boundary_condition: BoundaryCondition = "exact"
+) -> CompiledMapping:
+    """The lattice with matrices frozen at a single Mach number, which stays that of the flight's trim.
+
+    The cheapest lattice there is; `REFERENCE` interpolates between three and costs three times as much.
+    """
+    return frozen(plane.airframe, fixed_machs([mach]), boundary_condition)
 
 
 def lattices(

@@ -1,11 +1,17 @@
 """Small motions of the airliner with a surrogate beside those with its lattice: Fig. 18."""
 
-from collections.abc import Iterable
+from dataclasses import replace
 
 import pandas as pd
 
-from flexsurr.flight.linearise import NaturalMode, linearise
-from flexsurr.flight.trim import Trim
+from flexsurr.aerodynamics.features import MODES as AERODYNAMIC_MODES
+from flexsurr.aerodynamics.mach_grid import fixed_machs
+from flexsurr.aerodynamics.quadratic import quadratic
+from flexsurr.evaluation.airliner_models import Airliner
+from flexsurr.flight.airliner import modal_motion
+from flexsurr.flight.linearise import linearise
+from flexsurr.flight.model import FlightModel
+from flexsurr.flight.trim import Trim, trim
 
 MODE_COLUMNS = ("mode", "reference_real", "reference_imag", "surrogate_real", "surrogate_imag")
 
@@ -33,13 +39,32 @@ def airliner_modes(reference: Trim, surrogate: Trim) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def eigenvalue_table(trims: Iterable[tuple[str, Trim]]) -> pd.DataFrame:
-    """Columns model, mode, real, imag [1/s], for each named trim."""
-    rows = []
-    for model, trim in trims:
-        modes: list[NaturalMode] = linearise(trim)
-        rows += [
-            {"model": model, "mode": m.name, "real": m.eigenvalue.real, "imag": m.eigenvalue.imag}
-            for m in modes
-        ]
-    return pd.DataFrame(rows)
+def left_out_modes(plane: Airliner) -> pd.DataFrame:
+    """What it changes that the aerodynamics does not know some of the elastic modes.
+
+    It knows six at most, so the modes left out take the places of as many of the last ones in a second
+    aerodynamics, the quadratic form, and are compared with a third that knows neither. Columns: mode,
+    without_real, without_imag, with_real, with_imag [1/s], change_percent of the eigenvalue's magnitude.
+    """
+    settings = plane.settings
+    numbers = range(1, settings.elastic_modes + 1)
+    left_out = tuple(k for k in numbers if k not in settings.aerodynamic_modes)[:AERODYNAMIC_MODES]
+    kept = settings.aerodynamic_modes[: AERODYNAMIC_MODES - len(left_out)]
+    grid = fixed_machs([settings.condition.mach])
+    trims = []
+    for chosen in (kept, tuple(sorted((*kept, *left_out)))):
+        airframe = replace(plane.airframe, motion=modal_motion(plane.modes, plane.airframe.lattice, chosen))
+        model = FlightModel(plane.modes, quadratic(airframe, grid), chosen=chosen)
+        trims.append(trim(model, settings.condition, settings.limits))
+    frame = airliner_modes(*trims).rename(
+        columns={
+            "reference_real": "without_real",
+            "reference_imag": "without_imag",
+            "surrogate_real": "with_real",
+            "surrogate_imag": "with_imag",
+            "error_percent": "change_percent",
+        }
+    )
+    # those that gave up their places are as in a vacuum in both
+    unknown = [f"elastic {k}" for k in numbers if k not in (*kept, *left_out)]
+    return frame[~frame["mode"].isin(unknown)].reset_index(drop=True)

@@ -34,8 +34,8 @@ def implements_mapping(
     `allocates` (for LAPACK, say) pays for numba's reference counts.
     """
     options: dict[str, Any] = {"fastmath": FLOATING_POINT, "error_model": "numpy", "forceinline": inline}
-    if not allocates:
-        options["_nrt"] = False
+    # said either way: what is not said is taken over from the caller, equations that don't allocate
+    options["_nrt"] = allocates
 
     check_belongs(kernel_class)
 

@@ -9,7 +9,10 @@ from hypothesis import strategies as st
 
 from flexsurr.aerodynamics.features import COEFFICIENTS, CONTROLS, FEATURES
 from flexsurr.aerodynamics.standard_atmosphere import density, speed_of_sound
+from flexsurr.aerodynamics.vortex_lattice import rebuilt
+from flexsurr.config.panels import PanelCounts
 from flexsurr.config.study import Integrator
+from flexsurr.flight.airliner import flexible_airframe
 from flexsurr.flight.linear_aerodynamics import derivatives, linear_aerodynamics
 from flexsurr.flight.model import TO_BODY, Doublet, FlightModel, features
 from flexsurr.simulation import simulate
@@ -143,6 +146,19 @@ def test_features_in_the_equations_are_those_along_a_trajectory(gnba_modes):
             assert added[6:9] == pytest.approx(pressure * inputs[:3] / 55764.0, rel=1e-9, abs=1e-9)
             assert added[[20, 21, 24, 25, 26, 27]] == pytest.approx(pressure * inputs[6:], rel=1e-9, abs=1e-6)
     assert features(model, np.array([1.0]), x[None])[0, 0] == pytest.approx(speed / speed_of_sound(x[2]))
+
+
+def test_the_lattice_rebuilt_at_every_call_can_be_flown(gnba_modes):
+    coarse = PanelCounts(wing=(10, 2), horizontal_tail=(4, 2), vertical_tail=(4, 2))
+    model = FlightModel(gnba_modes, rebuilt(flexible_airframe(gnba_modes, coarse)))
+    x = level()
+    x[8:12] = 12.0, 0.01, 0.02, -0.01
+    x[12:] = np.linspace(-3.0, 3.0, 16)
+    coefficients = model.aerodynamics(features(model, np.zeros(1), x[None]))[0]
+    held = linear_aerodynamics(np.zeros(25), coefficients, np.zeros((12, 25)))
+    same = model.with_aerodynamics(held).derivative(0.0, x)
+    assert model.derivative(0.0, x) == pytest.approx(same, rel=1e-9, abs=1e-9)
+    assert coefficients[2] < -0.2
 
 
 def test_a_doublet_goes_up_comes_down_and_ends(gnba_modes):

@@ -15,6 +15,7 @@ rule fly:
     output:
         modes=f"{RESULTS}/evaluation/airliner/modes.parquet",
         table=f"{RESULTS}/tables/airliner_modes.csv",
+        left_out=f"{RESULTS}/tables/airliner_left_out_modes.csv",
         doublets=f"{RESULTS}/evaluation/airliner/doublets.parquet",
         trims=f"{RESULTS}/evaluation/airliner/trims.parquet",
     log:
@@ -28,7 +29,7 @@ rule fly:
     shell:
         "python -m flexsurr.cli.fly --job {params.job:q} --selection {input.selection:q}"
         " --runs {params.runs:q} --modes {output.modes:q} --table {output.table:q}"
-        " --doublets {output.doublets:q} --trims {output.trims:q} > {log:q} 2>&1"
+        " --left_out {output.left_out:q} --doublets {output.doublets:q} --trims {output.trims:q} > {log:q} 2>&1"
 
 
 rule fly_randomly:
