@@ -102,7 +102,7 @@ class CoefficientObjective:
         gram = np.empty((parameters.size, parameters.size))
         first, second = np.triu_indices(self.hidden)
         mixed = (weights_out * mean_weights) @ weights_out.T
-        pairs = self._input_pairs.T @ (slopes[:, first] * slopes[:, second]) * mixed[first, second]
+        pairs = (_products_of_pairs(slopes) @ self._input_pairs).T * mixed[first, second]
         # (inputs, hidden, inputs, hidden), in the order of the parameters
         of_inputs, of_neurons = _pair_numbers(inputs.shape[1]), _pair_numbers(self.hidden)
         block = pairs[of_inputs[:, None, :, None], of_neurons[None, :, None, :]]
@@ -118,6 +118,18 @@ class CoefficientObjective:
         gradient = np.empty_like(parameters)
         loss = self.gradient(parameters, gradient)
         return NormalEquations(loss, gram, 0.5 * gradient)
+
+
+def _products_of_pairs(slopes: Array) -> Array:
+    """The distinct products of two columns of `slopes` (m, hidden), as rows (hidden (hidden + 1) / 2, m)."""
+    columns = np.ascontiguousarray(slopes.T)
+    hidden = len(columns)
+    products = np.empty((hidden * (hidden + 1) // 2, len(slopes)))
+    place = 0
+    for k in range(hidden):  # rows of neighbouring numbers, five times as fast as by index
+        np.multiply(columns[k], columns[k:], out=products[place : place + hidden - k])
+        place += hidden - k
+    return products
 
 
 def _pair_numbers(count: int) -> NDArray[np.int64]:
