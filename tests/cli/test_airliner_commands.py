@@ -1,0 +1,108 @@
+"""The airliner's commands from limits to a selected network, on the quick preset's few samples."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from flexsurr.aerodynamics.features import COEFFICIENTS
+from flexsurr.cli import sample_aerodynamics, select_coefficients, store, train_coefficients
+from flexsurr.config.airliner import AirlinerFiles
+from flexsurr.storage import StorageError, read_samples
+from flexsurr.surrogates.coefficient_network import load_coefficient_network
+from flexsurr.training.tracking import read_store
+from flexsurr.workflow.airliner_plan import AirlinerPlan
+
+ROOT = Path(__file__).parents[2]
+PLAN = AirlinerPlan.load(ROOT, AirlinerFiles(sweep="config/sweeps/airliner_quick.yaml"))
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory) -> Path:
+    """Everything the commands write, made in the order in which the rules make it."""
+    root = tmp_path_factory.mktemp("results")
+    for shard in range(PLAN.shards):
+        sample_aerodynamics.main(PLAN.sample("pseudo_random", shard), shard_path(root, shard))
+    store.main({"uri": None, "studies": ["airliner"]}, root / "mlflow" / "airliner.json")
+    shards = [shard_path(root, shard) for shard in range(PLAN.shards)]
+    for run_id in PLAN.runs:
+        train_coefficients.main(
+            PLAN.train(run_id), shards, root / "mlflow" / "airliner.json", root / "runs" / run_id
+        )
+    select(root)
+    return root
+
+
+def shard_path(root: Path, shard: int) -> Path:
+    return root / f"shard-{shard:04d}.parquet"
+
+
+def select(root: Path) -> None:
+    select_coefficients.main(
+        PLAN.select(),
+        root / "runs",
+        root / "mlflow" / "airliner.json",
+        root / "selected.json",
+        root / "airliner_accuracy.csv",
+    )
+
+
+def test_a_shard_comes_out_the_same_from_its_seed_and_number(results, tmp_path):
+    again = tmp_path / "shard.parquet"
+    sample_aerodynamics.main(PLAN.sample("pseudo_random", 1), again)
+    first, second = read_samples(shard_path(results, 1)), read_samples(again)
+    np.testing.assert_array_equal(first.u, second.u)
+    np.testing.assert_array_equal(first.y, second.y)
+    assert first.metadata == second.metadata
+    assert (first.metadata.first, first.metadata.count) == (64, 32)
+
+
+def test_the_table_has_each_coefficient_once_for_each_model(results):
+    table = pd.read_csv(results / "airliner_accuracy.csv")
+    assert list(table.columns) == ["output", "train_nmse", "validation_nmse", "validation_r2", "model"]
+    for model in ("linear", "network"):
+        assert tuple(table.loc[table["model"] == model, "output"]) == COEFFICIENTS
+    np.testing.assert_allclose(table["validation_r2"], 1.0 - table["validation_nmse"])
+
+
+def test_the_selected_network_is_the_one_that_was_tabulated(results):
+    chosen = json.loads((results / "selected.json").read_text())["network"]
+    folder = results / "runs" / chosen["run_id"]
+    network = load_coefficient_network(folder / "weights.npz")
+    samples = read_samples(shard_path(results, 0))
+    assert network(samples.u).shape == samples.y.shape
+    errors = pd.read_parquet(folder / "errors.parquet")
+    nmse = np.mean(errors[[f"error_{name}" for name in COEFFICIENTS]].to_numpy() ** 2)
+    assert nmse == pytest.approx(chosen["validation_nmse"], rel=1e-9)
+    assert len(errors) == round(0.2 * 96)
+
+
+def test_runs_are_on_the_tracking_page(results):
+    from mlflow import MlflowClient
+
+    page = read_store(results / "mlflow" / "airliner.json")
+    runs = MlflowClient(page.uri).search_runs([page.experiments["airliner"]])
+    assert {run.data.tags.get("flexsurr.run_id") for run in runs} >= set(PLAN.runs)
+
+
+def test_without_a_network_that_finished_nothing_is_selected(results, tmp_path):
+    runs = tmp_path / "runs"
+    for run_id in PLAN.runs:
+        figures = json.loads((results / "runs" / run_id / "metrics.json").read_text())
+        figures["status"] = "failed"
+        (runs / run_id).mkdir(parents=True)
+        (runs / run_id / "metrics.json").write_text(json.dumps(figures))
+    with pytest.raises(StorageError, match="no network of the airliner has finished"):
+        select_coefficients.main(
+            PLAN.select(), runs, results / "mlflow" / "airliner.json", tmp_path / "s.json", tmp_path / "t.csv"
+        )
+
+
+def test_samples_of_another_configuration_are_refused(results, tmp_path):
+    run_id = next(iter(PLAN.runs))
+    job = {**PLAN.train(run_id), "configuration": "0" * 16}
+    shards = [shard_path(results, shard) for shard in range(PLAN.shards)]
+    with pytest.raises(StorageError, match=r"shard-0000\.parquet: belongs to the configuration"):
+        train_coefficients.main(job, shards, results / "mlflow" / "airliner.json", tmp_path)
