@@ -1,6 +1,7 @@
 """Laws that hold for any state of flight: mirror images, rigid motion in the guise of modes, small inputs."""
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -91,6 +92,14 @@ def test_frozen_matrices_are_exact_at_their_mach_numbers(units, node):
     for frozen_form, condition in ((EXACT, "exact"), (LINEAR, "linear")):
         again = rebuilt(AIRLINER_WITH_MODES, condition)(u)
         np.testing.assert_allclose(frozen_form(u), again, rtol=0.0, atol=1e-10)
+
+
+@pytest.mark.parametrize(("feature", "value"), [("mach", 1.2), ("alpha", np.nan), ("eta_1", np.inf)])
+def test_nonsense_is_no_number_and_no_error(feature, value):
+    u = features(np.zeros(25))
+    u[FEATURES.index(feature)] = value
+    for form in (EXACT, QUADRATIC, rebuilt(AIRLINER_WITH_MODES)):
+        assert not np.isfinite(form(u)).all()
 
 
 def test_interpolation_between_mach_numbers_converges():
