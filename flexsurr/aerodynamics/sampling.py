@@ -3,7 +3,6 @@
 from typing import Literal
 
 import numpy as np
-from scipy.stats.qmc import Sobol
 
 from flexsurr.aerodynamics.features import FEATURES
 from flexsurr.config.feature_limits import FeatureLimits
@@ -36,6 +35,8 @@ def draw_features(
     which fills the space more evenly; best where the number of all samples is a power of two.
     """
     if sampling == "sobol":
+        from scipy.stats.qmc import Sobol  # here, for scipy.stats takes a second to import
+
         sequence = Sobol(len(FEATURES), scramble=True, rng=np.random.default_rng(seed))
         if first:
             sequence.fast_forward(first)
