@@ -8,9 +8,10 @@ import numpy as np
 import pandas as pd
 
 from flexsurr.config.flight import FlightCondition
+from flexsurr.config.study import Integrator
 from flexsurr.evaluation.airliner_flights import MOVED, Flight, flown, limit_exceedances, peak_errors
 from flexsurr.evaluation.airliner_models import ONE_MACH, REFERENCE, Airliner
-from flexsurr.evaluation.ratios import relative_percent
+from flexsurr.evaluation.ratios import COST_COLUMNS, relative_percent
 from flexsurr.evaluation.timing import wall_time
 from flexsurr.flight.trim import Trim, TrimNotFound, trim
 from flexsurr.simulation.mapping import CompiledMapping
@@ -123,6 +124,28 @@ def airliner_cost(flights: pd.DataFrame) -> pd.DataFrame:
         row["paper_std_percent"] = PAPER_STD_PERCENT if model == "network" else float("nan")
         rows.append(row)
     return pd.DataFrame(rows)
+
+
+def as_cost_rows(cost: pd.DataFrame, boundary_condition: str, step_s: float) -> pd.DataFrame:
+    """`airliner_cost` in the columns of cost.csv, so that it can stand among the other studies' rows.
+
+    The described baseline is the lattice rebuilt at every call, which the study's percentage is of; the
+    compiled one is the lattice frozen at one Mach number. tip_error_percent is the worst error.
+    """
+    rows = cost.assign(
+        study="airliner",
+        variant=boundary_condition,
+        response="manoeuvre",
+        implementation="compiled",
+        integrator=Integrator(method="rk4", step_s=step_s).label,
+        relative_to_described_percent=cost[f"relative_to_{REBUILT}_percent"],
+        relative_to_described_std_percent=cost[f"relative_to_{REBUILT}_std_percent"],
+        relative_to_numpy_percent=float("nan"),
+        relative_to_compiled_percent=cost[f"relative_to_{ONE_MACH}_percent"],
+        tip_error_percent=cost["worst_error_percent"],
+        energy_drift_percent=float("nan"),
+    )
+    return rows[list(COST_COLUMNS)]
 
 
 def exceedance_summary(exceedances: pd.DataFrame) -> pd.DataFrame:

@@ -9,6 +9,7 @@ from flexsurr.config.panels import PanelCounts
 from flexsurr.evaluation.airliner_cost import (
     PAPER_PERCENT,
     airliner_cost,
+    as_cost_rows,
     exceedance_summary,
     fly_all,
 )
@@ -23,6 +24,7 @@ from flexsurr.evaluation.airliner_flights import (
 )
 from flexsurr.evaluation.airliner_models import REFERENCE, Airliner
 from flexsurr.evaluation.airliner_modes import MODE_COLUMNS, airliner_modes, left_out_modes
+from flexsurr.evaluation.ratios import COST_COLUMNS
 from flexsurr.flight.airliner import flexible_airframe
 from flexsurr.flight.linear_aerodynamics import linear_aerodynamics
 from flexsurr.flight.trim import trim
@@ -132,7 +134,12 @@ def test_costs_are_relative_to_each_lattice_over_the_flights_both_flew(plane, gn
     assert flights["model"].value_counts().to_dict() == {REFERENCE: 3, "network": 3, "vlm_rebuild": 1}
     assert flights["completed"].all()
     assert left["outside"].sum() == 0
-    cost = airliner_cost(flights).set_index("model")
+    table = airliner_cost(flights)
+    rows = as_cost_rows(table, "exact", 0.005)
+    assert tuple(rows.columns) == COST_COLUMNS
+    assert set(rows["integrator"]) == {"rk4(h=0.005)"}
+    assert rows["relative_to_described_percent"].tolist() == table["relative_to_vlm_rebuild_percent"].tolist()
+    cost = table.set_index("model")
     walls = flights.pivot(index="flight", columns="model", values="wall_s")
     expected = (100.0 * walls["network"] / walls[REFERENCE]).mean()
     assert cost.loc["network", f"relative_to_{REFERENCE}_percent"] == pytest.approx(expected)

@@ -40,6 +40,7 @@ rule fly_randomly:
         flights=f"{RESULTS}/evaluation/airliner/flights.parquet",
         exceedances=f"{RESULTS}/evaluation/airliner/exceedances.parquet",
         cost=f"{RESULTS}/tables/airliner_cost.csv",
+        rows=f"{RESULTS}/evaluation/airliner/cost.parquet",
         limits=f"{RESULTS}/tables/airliner_limits.csv",
     log:
         f"{RESULTS}/logs/fly_randomly/airliner.log",
@@ -53,7 +54,7 @@ rule fly_randomly:
     shell:
         "python -m flexsurr.cli.fly_randomly --job {params.job:q} --selection {input.selection:q}"
         " --runs {params.runs:q} --flights {output.flights:q} --exceedances {output.exceedances:q}"
-        " --cost {output.cost:q} --limits {output.limits:q} > {log:q} 2>&1"
+        " --cost {output.cost:q} --rows {output.rows:q} --limits {output.limits:q} > {log:q} 2>&1"
 
 
 rule draw_airliner:
