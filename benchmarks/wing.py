@@ -1,0 +1,63 @@
+"""The damped wing of the study and its data, for benchmarks of learning."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import yaml
+
+from flexsurr.beam import draw_initial_conditions, reduce, reduced_order
+from flexsurr.config.structure import Structure
+from flexsurr.config.study import InitialConditions, Integrator, Reduction, Variant
+from flexsurr.simulation import CompiledModel, simulate
+from flexsurr.training import Dataset, split_dataset
+
+STRUCTURE = Structure(
+    **yaml.safe_load((Path(__file__).parents[1] / "config/structures/wing.yaml").read_text())
+)
+SEED = 2024
+FIRST_OF_MANY, FRESH = 1000, 100_000  # numbers of trajectories that the study's own 50 do not use
+ACCURATE = Integrator(method="radau_iia_5", rtol=1e-9, atol=1e-11)
+
+
+def basis():
+    """Three mass-normalised modes."""
+    return reduce(STRUCTURE, Reduction(modes=3, normalisation="mass"))
+
+
+def wing_model(variant: Variant) -> CompiledModel:
+    """The compiled reduced-order model."""
+    return reduced_order(basis(), variant, "compiled")
+
+
+def starts(first: int, count: int):
+    """Random initial states, drawn for unit-norm modes as the study has them."""
+    return draw_initial_conditions(basis(), InitialConditions(), SEED, first, count)
+
+
+def free_responses(variant: Variant, first: int, count: int, t) -> Dataset:
+    """Samples at times t of free responses, every fifth of them to validate on."""
+    model = wing_model(variant)
+    x = np.concatenate([simulate(model, t, start, ACCURATE).x for start in starts(first, count)])
+    return split_dataset(
+        np.repeat(np.arange(count), t.size),
+        x,
+        np.array([model.derivative(0.0, state) for state in x]),
+        validation=range(0, count, 5),
+        state_names=model.state_names,
+        state_units=model.state_units,
+    )
+
+
+def datasets(variant: Variant) -> dict[str, Dataset]:
+    """The study's 50 responses, and 1,000 others of five samples each, validated on all of the 50."""
+    fifty = free_responses(variant, 0, 50, np.linspace(0.0, 0.2, 201))
+    others = free_responses(variant, FIRST_OF_MANY, 1000, np.linspace(0.0, 0.2, 5))
+    many = replace(
+        others,
+        x_train=np.concatenate([others.x_train, others.x_validation]),
+        dx_train=np.concatenate([others.dx_train, others.dx_validation]),
+        x_validation=np.concatenate([fifty.x_train, fifty.x_validation]),
+        dx_validation=np.concatenate([fifty.dx_train, fifty.dx_validation]),
+    )
+    return {"50 responses": fifty, "1,000 x 5": many}
