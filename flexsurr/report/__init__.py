@@ -98,4 +98,4 @@ TABLES: dict[str, Product[pd.DataFrame]] = {
     "cost": Product("Cost and accuracy", tables.cost, ("cost-*-*",)),
 }
 
-__all__ = ["FIGURES", "TABLES", "Product", "save", "save_page", "save_table"]
+__all__ = ["FIGURES", "TABLES", "Product", "damped", "save", "save_page", "save_table"]

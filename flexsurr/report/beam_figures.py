@@ -18,7 +18,7 @@ from flexsurr.report.style import (
 )
 
 WINDOW_S = (0.5, 1.0)
-"""The part of the response that Fig. 9 of the study shows."""
+"""The part of the response that Fig. 9 of the study shows; all of a response that is longer."""
 
 VARIANT_LINES = {"hamiltonian": "-", "as_printed": (0, (3, 1.5))}
 
@@ -48,14 +48,16 @@ def figure_08(statics: pd.DataFrame) -> Figure:
             style="italic",
             fontsize=9,
         )
-    handles = [
-        left.plot([], [], color=COLOURS["exact"], linewidth=1.6)[0],
-        left.plot([], [], "o", color=COLOURS["fom"], markerfacecolor="none")[0],
-        left.plot([], [], "x", color=COLOURS["rom"], markersize=3.5)[0],
-    ]
+    handles = {
+        "exact elastica": left.plot([], [], color=COLOURS["exact"], linewidth=1.6)[0],
+        "full order": left.plot([], [], "o", color=COLOURS["fom"], markerfacecolor="none")[0],
+        "reduced order": left.plot([], [], "x", color=COLOURS["rom"], markersize=3.5)[0],
+    }
+    if statics["x_exact_m"].isna().all():
+        del handles["exact elastica"]
     left.legend(
-        handles,
-        ["exact elastica", "full order", "reduced order"],
+        list(handles.values()),
+        list(handles),
         loc="center left",
         bbox_to_anchor=(0.02, 0.66),
     )
@@ -101,8 +103,9 @@ def figure_09(validation: pd.DataFrame) -> Figure:
     colours, the variants their line styles; below, the differences that the first panel hides.
     """
     start_s, end_s = WINDOW_S
-    if validation["t_s"].max() <= start_s:
-        start_s = 0.0
+    longest_s = validation["t_s"].max()
+    if not start_s < longest_s <= end_s:
+        start_s, end_s = 0.0, longest_s
     shown = validation[validation["t_s"].between(start_s, end_s)]
     z = shown.pivot_table(index="t_s", columns=["variant", "model"], values="tip_z_m")
     variants = [variant for variant in VARIANT_LINES if variant in z.columns.get_level_values(0)]

@@ -24,7 +24,8 @@ POSITION = "#9B4F86"
 @styled
 def figure_03(structure: Structure) -> Figure:
     """Discretisation, in the plane of bending: rigid elements, springs at their roots, lumped masses."""
-    beam = _few_elements(structure, ("out_of_plane",))
+    # a schematic: every length in it is a share of the span
+    beam = _few_elements(structure, ("out_of_plane",)).model_copy(update={"length_m": 1.0})
     q = np.deg2rad([9.0, 11.0, 12.0, 11.0, 9.0])
     nodes, frames = node_positions(beam, q)[:, [0, 2]], element_frames(beam, q)
     length = beam.length_m / DRAWN_ELEMENTS

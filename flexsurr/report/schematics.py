@@ -59,12 +59,12 @@ def figure_07() -> Figure:
     """The D-HNN, eq. 12: two scalars H and D out, the field by differentiation of both."""
     figure, ax = canvas(PAGE_IN * 0.82, 1.9)
     inputs = ((0.55, 1.2), (0.55, 0.6))
-    heads = ((1.35, "H", BLUE, PALE_BLUE), (0.42, "D", PURPLE, PALE_PURPLE))
+    heads = ((1.28, "H", BLUE, PALE_BLUE), (0.5, "D", PURPLE, PALE_PURPLE))
     for centre, text in zip(inputs, (r"$\eta$", r"$p$"), strict=True):
         neuron(ax, centre, text, BLACK, "white")
-    outputs = ((5.15, 1.35), (5.15, 0.42))
+    outputs = ((5.15, 1.28), (5.15, 0.5))
     for middle, name, line, fill in heads:
-        hidden = tuple((1.5, middle + offset) for offset in (0.3, 0.0, -0.3))
+        hidden = tuple((1.5, middle + offset) for offset in (0.26, 0.0, -0.26))
         for centre in hidden:
             neuron(ax, centre, r"$\sigma$", line, fill, radius=0.11)
         scalar = (2.3, middle)
@@ -82,9 +82,9 @@ def figure_07() -> Figure:
     )
     for centre, text in zip(outputs, texts, strict=True):
         block(ax, centre, (1.44, 0.36), text)
-    titles = ((0.55, "state"), (1.5, "hidden layers"), (2.42, "energy,"), (5.15, "field (eq. 12)"))
-    _column_titles(ax, 1.8, titles)
-    _column_titles(ax, 0.08, ((2.35, "dissipation"),))
+    titles = ((0.55, "state"), (1.5, "hidden layers"), (2.3, "energy"), (5.15, "field (eq. 12)"))
+    _column_titles(ax, 1.78, titles)
+    _column_titles(ax, 0.14, ((2.3, "dissipation"),))
     return figure
 
 

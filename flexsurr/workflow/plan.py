@@ -50,6 +50,7 @@ VALIDATION = (
     "evaluation.force",
     "evaluation.distributed",
     "evaluation.validation_duration_s",
+    "evaluation.validation_integrator",
 )
 EVALUATION = (
     "seed",

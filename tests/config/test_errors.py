@@ -47,7 +47,7 @@ BAD_VALUES = [
     (CONFIG, "studies", [], ["studies", "[]", "at least one value"]),
     (CONFIG, "studies", ["cantilver"], ["studies", "'cantilver'", "allowed: cantilever"]),
     (CONFIG, "timing.cores", 0, ["timing.cores", "0", "greater than or equal to 1"]),
-    (CONFIG, "overrides.wing", {"seed": 1}, ["overrides.wing", "no such study", "cantilever"]),
+    (CONFIG, "overrides.wnig", {"seed": 1}, ["overrides.wnig", "no such study", "cantilever, wing"]),
     (CONFIG, "overrides.cantilever.sede", 1, ["overrides.cantilever.sede", "1", "did you mean 'seed'"]),
     (STRUCTURE, "length_mm", 1000.0, ["length_mm", "1000.0", "did you mean 'length_m'"]),
     (STRUCTURE, "length_m", "1 m", ["length_m", "'1 m'", "number"]),

@@ -12,7 +12,12 @@ SWEEP = "config/sweeps/quick.yaml"
 EVALUATED = {"responses": 2, "evaluate": 4}
 DRAWN_FROM_RESPONSES = {f"draw_{BEAM}_figure_{number}": 1 for number in (10, 12, 13)}
 DRAWN_FROM_COSTS = {f"draw_{BEAM}_cost_accuracy": 1, f"tabulate_{BEAM}_cost": 1, "join_cost": 1}
-DRAWN_FROM_RUNS = {f"draw_{BEAM}_training_loss": 1, f"tabulate_{BEAM}_training": 1, "join_training": 1}
+RUN_TABLES = ("training", "seeds", "architectures")
+DRAWN_FROM_RUNS = {
+    f"draw_{BEAM}_training_loss": 1,
+    **{f"tabulate_{BEAM}_{name}": 1 for name in RUN_TABLES},
+    **{f"join_{name}": 1 for name in RUN_TABLES},
+}
 SELECTED = {
     f"judge_{BEAM}": 1,
     "select": 1,

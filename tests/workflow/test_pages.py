@@ -19,7 +19,7 @@ from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.by import By
 from selenium.webdriver.support.ui import WebDriverWait
 
-from flexsurr.report import FIGURES, TABLES
+from flexsurr.report import FIGURES, TABLES, damped
 from flexsurr.training.tracking import RUN_KEY, store_uri
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
@@ -35,6 +35,7 @@ QUIET = (
     "--window-size=1400,1000",
 )
 PATIENCE_S = 120
+OF_THE_CANTILEVER = [name for name, figure in FIGURES.items() if figure.shows is not damped]
 
 
 @pytest.fixture(scope="module")
@@ -91,14 +92,15 @@ def open_report(quick, browser, kind: str) -> None:
 
 
 def test_the_report_lists_every_figure_and_table_of_the_study(quick, browser):
-    for kind, products in (("figures", FIGURES), ("tables", TABLES)):
+    figures = {name: FIGURES[name] for name in OF_THE_CANTILEVER}
+    for kind, products in (("figures", figures), ("tables", TABLES)):
         open_report(quick, browser, kind)
         for name, product in products.items():
             wait_for(browser, name, product.title)
     assert complaints(browser) == []
 
 
-@pytest.mark.parametrize("name", FIGURES)
+@pytest.mark.parametrize("name", OF_THE_CANTILEVER)
 def test_the_report_shows_a_figure_and_what_to_see_in_it(quick, browser, name):
     open_report(quick, browser, "figures")
     wait_for(browser, name)
