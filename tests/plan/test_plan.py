@@ -153,6 +153,17 @@ def test_the_last_shard_holds_what_is_left(root):
     assert [(job["first"], job["count"]) for job in shards] == [(0, 3), (3, 3), (6, 1)]
 
 
+def test_the_figure_of_architectures_sees_every_study_of_the_same_structure(root):
+    change(root, "config/config.yaml", "studies", [BEAM, "wing", "wing_unit"])
+    p = Plan(load(root, ["config/config.yaml"]))
+    both = [f"runs/{key}/metrics.json" for name in ("wing", "wing_unit") for key in p.runs_of(name)]
+    assert p.files("wing", "relatives") == p.files("wing_unit", "relatives") == both
+    assert len(set(both)) == 2 * len(p.runs_of("wing"))
+    assert len(p.files(BEAM, "relatives")) == len(p.runs_of(BEAM))
+    assert "architecture_errors" in p.figures("wing")
+    assert "architecture_errors" not in p.figures(BEAM)
+
+
 def test_the_papers_recipe_stands_beside_the_default_sweep():
     configuration = load(REPOSITORY, ["config/config.yaml", "config/presets/paper.yaml"])
     sweeps = Plan(configuration).select(BEAM)["sweeps"]
