@@ -5,7 +5,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flexsurr.evaluation.energy import ENERGY_COLUMNS, drift_percent, energy_table, relative_drift_percent
+from flexsurr.evaluation.cases import Case, Reference
+from flexsurr.evaluation.energy import (
+    ENERGY_COLUMNS,
+    drift_percent,
+    energy_error_percent,
+    energy_table,
+    relative_drift_percent,
+)
 
 
 @given(st.floats(1e-3, 1e3), st.floats(-50.0, 50.0))
@@ -26,6 +33,19 @@ def test_work_of_the_load_is_no_drift():
 def test_nothing_after_the_load_is_nothing_to_compare():
     t = np.linspace(0.0, 1.0, 11)
     assert np.isnan(drift_percent(np.ones(11), t, free_from_s=2.0))
+
+
+def test_where_something_dissipates_the_distance_from_the_reference_counts(structure):
+    """An energy that falls as the reference's does has no error, one that is conserved has a large one."""
+    t = np.linspace(0.0, 1.0, 11)
+    falling = 8.0 * np.exp(-t)
+    reference = Reference(Case(0, np.zeros(2)), t, np.zeros((11, 2)), np.zeros((11, 3)), falling, 1.0)
+    damped = structure.model_copy(update={"damping_out_of_plane_s": 0.1})
+    assert energy_error_percent(damped, reference, falling, 0.0) == 0.0
+    assert energy_error_percent(damped, reference, np.full(11, 8.0), 0.0) == pytest.approx(63.2, abs=0.1)
+    assert energy_error_percent(damped, reference, falling[:4] + 0.8, 0.0) == pytest.approx(10.0)
+    assert energy_error_percent(structure, reference, np.full(11, 8.0), 0.0) == 0.0
+    assert energy_error_percent(structure, reference, falling, 0.0) == pytest.approx(63.2, abs=0.1)
 
 
 @pytest.fixture(scope="module")
