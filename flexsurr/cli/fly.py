@@ -32,10 +32,12 @@ def main(
     plane = airliner_of(job)
     settings = plane.settings
     forms = forms_of(job, plane, selected_network(selection, runs), with_rebuild=False)
-    cruise = {
-        name: trim(plane.flying(mapping), settings.condition, settings.limits)
-        for name, mapping in forms.items()
-    }
+    cruise = {}
+    for name, mapping in forms.items():
+        try:
+            cruise[name] = trim(plane.flying(mapping), settings.condition, settings.limits)
+        except TrimNotFound as error:
+            raise TrimNotFound(f"{name}: {error}") from None
     frame = airliner_modes(cruise[REFERENCE], cruise["network"])
     write_frame(modes, frame)
     write_frame(table, frame[list(MODE_COLUMNS)])
