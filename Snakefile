@@ -32,10 +32,14 @@ report: "workflow/report/workflow.rst"
 include: "workflow/rules/plan.smk"
 include: "workflow/rules/data.smk"
 include: "workflow/rules/learning.smk"
-include: "workflow/rules/airliner_data.smk"
-include: "workflow/rules/airliner_flight.smk"
 include: "workflow/rules/evaluation.smk"
 include: "workflow/rules/report.smk"
+
+
+if AIRLINER:
+
+    include: "workflow/rules/airliner_data.smk"
+    include: "workflow/rules/airliner_flight.smk"
 
 
 rule all:
@@ -47,3 +51,4 @@ rule all:
             for name in plan.figures(study)
         ],
         expand(f"{RESULTS}/tables/{{name}}.csv", name=TABLES),
+        rules.airliner.input if AIRLINER else [],

@@ -1,5 +1,6 @@
-"""Draw the airliner: Figures 16 to 21, and the shapes of its elastic modes."""
+"""Draw the airliner: Figures 16 to 21, its elastic modes, and what its network errs."""
 
+import json
 from pathlib import Path
 
 import pandas as pd
@@ -8,10 +9,11 @@ from flexsurr.cli.command import Job, command
 from flexsurr.cli.flying import airliner_of
 from flexsurr.report.airliner_flight_figures import figure_18, figure_19, figure_20, figure_21
 from flexsurr.report.airliner_geometry_figures import figure_16, figure_17, mode_shapes
+from flexsurr.report.airliner_learning_figures import coefficient_errors
 from flexsurr.report.style import save
 
 
-def main(job: Job, modes: Path, doublets: Path, folder: Path) -> None:
+def main(job: Job, selection: Path, runs: Path, modes: Path, doublets: Path, folder: Path) -> None:
     """Write the SVG and the PNG of each figure into `folder`."""
     plane = airliner_of(job)
     model = plane.modes.model
@@ -19,6 +21,8 @@ def main(job: Job, modes: Path, doublets: Path, folder: Path) -> None:
     save(figure_17(model, plane.modes.properties.centre_of_gravity), folder / "figure_17")
     save(mode_shapes(plane.modes, range(1, len(plane.modes.omega_rad_s) + 1)), folder / "elastic_modes")
     save(figure_18(pd.read_parquet(modes)), folder / "figure_18")
+    chosen = json.loads(selection.read_text(encoding="utf-8"))["network"]["run_id"]
+    save(coefficient_errors(pd.read_parquet(runs / chosen / "errors.parquet")), folder / "coefficient_errors")
     histories = pd.read_parquet(doublets)
     times = plane.settings.doublet
     for control, draw, name in (
@@ -34,5 +38,11 @@ def main(job: Job, modes: Path, doublets: Path, folder: Path) -> None:
 if __name__ == "__main__":
     command(
         main,
-        {"modes": "eigenvalues", "doublets": "time histories", "folder": "where the figures go"},
+        {
+            "selection": "the chosen network",
+            "runs": "the folder of all runs",
+            "modes": "eigenvalues",
+            "doublets": "time histories",
+            "folder": "where the figures go",
+        },
     )

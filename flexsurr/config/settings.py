@@ -32,14 +32,17 @@ class Timing(Record):
 
 
 class Settings(Record):
-    """config/config.yaml. `overrides` holds values that replace those of a study's file."""
+    """config/config.yaml. `overrides` holds values that replace those of a study's file.
+
+    Without an `airliner` nothing of it is run.
+    """
 
     results: Annotated[str, Field(min_length=1)] = "results"
     studies: Annotated[tuple[str, ...], Field(min_length=1)]
     tracking: Tracking = Tracking()
     timing: Timing = Timing()
     overrides: dict[str, dict[str, Any]] = Field(default_factory=dict)
-    airliner: AirlinerFiles = AirlinerFiles()
+    airliner: AirlinerFiles | None = None
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from flexsurr.cli import page
 from flexsurr.config.settings import load
 from flexsurr.storage import read_shard
 from flexsurr.workflow.plan import Plan
@@ -105,3 +106,12 @@ def test_simulating_needs_neither_torch_nor_mlflow_nor_matplotlib():
     code = f"import sys, flexsurr.cli.simulate; print({heavy} & set(sys.modules))"
     done = subprocess.run([sys.executable, "-c", code], cwd=REPOSITORY, capture_output=True, text=True)
     assert done.stdout.strip() == "set()", done.stderr
+
+
+def test_a_table_becomes_a_page_with_title_and_caption(tmp_path):
+    (tmp_path / "limits.csv").write_text("input,beyond\nalpha,0.25\n")
+    (tmp_path / "limits.rst").write_text("What to\nsee in it.\n")
+    page.main({"title": "Limits"}, tmp_path / "limits.csv", tmp_path / "limits.rst", tmp_path / "limits.html")
+    text = (tmp_path / "limits.html").read_text()
+    for part in ("<h1>Limits</h1>", "What to see in it.", "<td>alpha</td>", '<td class="number">0.25</td>'):
+        assert part in text

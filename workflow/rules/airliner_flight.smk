@@ -2,10 +2,23 @@
 
 from flexsurr.workflow.airliner_flight_plan import flight_job
 
-AIRLINER_FIGURES = [
-    *(f"figure_{number}" for number in range(16, 22)),
-    "elastic_modes",
-]
+AIRLINER_FIGURES = {
+    "figure_16": "The airliner and its panels",
+    "figure_17": "Distribution of mass",
+    "figure_18": "Eigenvalues in trim",
+    "figure_19": "Elevator doublet",
+    "figure_20": "Aileron doublet",
+    "figure_21": "Rudder doublet",
+    "elastic_modes": "Elastic modes",
+    "coefficient_errors": "Error against each input",
+}
+AIRLINER_TABLES = {
+    "airliner_accuracy": "Accuracy of the coefficients",
+    "airliner_modes": "Eigenvalues in trim",
+    "airliner_left_out_modes": "What the modes left out of the aerodynamics change",
+    "airliner_cost": "Cost of ninety flights",
+    "airliner_limits": "States beyond the network's limits",
+}
 AIRLINER_FLIGHT = json.dumps(flight_job(airliner.airliner), sort_keys=True)
 
 
@@ -40,7 +53,7 @@ rule fly_randomly:
         flights=f"{RESULTS}/evaluation/airliner/flights.parquet",
         exceedances=f"{RESULTS}/evaluation/airliner/exceedances.parquet",
         cost=f"{RESULTS}/tables/airliner_cost.csv",
-        rows=f"{RESULTS}/evaluation/airliner/cost.parquet",
+        rows=f"{RESULTS}/tables/airliner/cost.csv",
         limits=f"{RESULTS}/tables/airliner_limits.csv",
     log:
         f"{RESULTS}/logs/fly_randomly/airliner.log",
@@ -59,6 +72,7 @@ rule fly_randomly:
 
 rule draw_airliner:
     input:
+        selection=f"{RESULTS}/selected/airliner.json",
         modes=rules.fly.output.modes,
         doublets=rules.fly.output.doublets,
     output:
@@ -68,7 +82,7 @@ rule draw_airliner:
                 caption=f"../report/airliner_{name}.rst",
                 category="airliner",
                 subcategory="figures",
-                labels={"figure": name},
+                labels={"figure": name, "shows": AIRLINER_FIGURES[name]},
             )
             for name in AIRLINER_FIGURES
         ),
@@ -78,18 +92,47 @@ rule draw_airliner:
     params:
         job=AIRLINER_FLIGHT,
         code=code("draw_airliner"),
+        runs=f"{RESULTS}/runs",
         folder=f"{RESULTS}/figures/airliner",
     message:
         "drawing the airliner"
     shell:
-        "python -m flexsurr.cli.draw_airliner --job {params.job:q} --modes {input.modes:q}"
+        "python -m flexsurr.cli.draw_airliner --job {params.job:q} --selection {input.selection:q}"
+        " --runs {params.runs:q} --modes {input.modes:q}"
         " --doublets {input.doublets:q} --folder {params.folder:q} > {log:q} 2>&1"
+
+
+for name, title in AIRLINER_TABLES.items():
+
+    rule:
+        name:
+            f"show_{name}"
+        input:
+            csv=f"{RESULTS}/tables/{name}.csv",
+            caption=os.path.relpath(f"{workflow.basedir}/workflow/report/{name}.rst"),
+        output:
+            report(
+                f"{RESULTS}/tables/airliner/{name}.html",
+                caption=f"../report/{name}.rst",
+                category="airliner",
+                subcategory="tables",
+                labels={"table": name, "shows": title},
+            ),
+        log:
+            f"{RESULTS}/logs/tables/{name}.log",
+        params:
+            job=json.dumps({"title": title}),
+            code=code("page"),
+        message:
+            f"a page of {name}"
+        shell:
+            "python -m flexsurr.cli.page --job {params.job:q} --csv {input.csv:q}"
+            " --caption {input.caption:q} --page {output:q} > {log:q} 2>&1"
 
 
 rule airliner:
     # Everything of the airliner.
     input:
         rules.draw_airliner.output,
-        rules.fly.output.table,
-        rules.fly_randomly.output.cost,
-        f"{RESULTS}/tables/airliner_accuracy.csv",
+        expand(f"{RESULTS}/tables/airliner/{{name}}.html", name=AIRLINER_TABLES),
+        rules.fly_randomly.output.rows,

@@ -36,6 +36,7 @@ except ConfigurationError as error:
 
 RESULTS = plan.settings.results
 STUDIES = list(plan.studies)
+AIRLINER = plan.settings.airliner is not None
 
 
 def job(rule, *keys):

@@ -80,7 +80,12 @@ for table in TABLES:
         name:
             f"join_{table}"
         input:
-            expand(f"{RESULTS}/tables/{{study}}/{table}.csv", study=STUDIES),
+            expand(
+                f"{RESULTS}/tables/{{study}}/{table}.csv",
+                study=(
+                    [*STUDIES, "airliner"] if table == "cost" and AIRLINER else STUDIES
+                ),
+            ),
         output:
             f"{RESULTS}/tables/{table}.csv",
         log:
