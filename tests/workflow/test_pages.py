@@ -82,12 +82,14 @@ def click(browser, word: str) -> None:
     found[-1].click()
 
 
-def open_report(quick, browser, kind: str) -> None:
-    """The list of the study's figures or tables in the report."""
+def open_report(quick, browser, kind: str, study: str = "cantilever") -> None:
+    """The list of a study's figures or tables in the report."""
     browser.get((quick.results / "report.html").as_uri())
     wait_for(browser, "Results", "surrogate")
     click(browser, "Results")
-    wait_for(browser, "cantilever", "figures", "tables")
+    wait_for(browser, "airliner", "cantilever", "wing")
+    click(browser, study)
+    wait_for(browser, "figures", "tables")
     click(browser, kind)
 
 
@@ -118,9 +120,29 @@ def test_the_report_shows_a_figure_and_what_to_see_in_it(quick, browser, name):
     assert complaints(browser) == []
 
 
-@pytest.mark.parametrize("name", ["figure_03", "figure_10", "figure_13", "cost_accuracy", "training_loss"])
-def test_a_browser_draws_the_figures(quick, browser, name):
-    browser.get((quick.results / "figures" / "cantilever" / f"{name}.svg").as_uri())
+@pytest.mark.parametrize(
+    ("study", "names"),
+    [
+        ("wing", ("figure_07", "figure_14", "figure_15", "architecture_errors")),
+        ("airliner", (*(f"figure_{number}" for number in range(16, 22)), "coefficient_errors")),
+    ],
+)
+def test_the_report_lists_the_figures_of_the_other_studies(quick, browser, study, names):
+    open_report(quick, browser, "figures", study)
+    wait_for(browser, *names)
+    assert complaints(browser) == []
+
+
+@pytest.mark.parametrize(
+    ("study", "name"),
+    [
+        *(("cantilever", name) for name in ("figure_03", "figure_10", "cost_accuracy", "training_loss")),
+        ("wing", "figure_14"),
+        ("airliner", "figure_16"),
+    ],
+)
+def test_a_browser_draws_the_figures(quick, browser, study, name):
+    browser.get((quick.results / "figures" / study / f"{name}.svg").as_uri())
     box = browser.execute_script("const b = document.documentElement.getBBox(); return [b.width, b.height]")
     assert min(box) > 50
     assert complaints(browser) == []
