@@ -26,6 +26,15 @@ SELECTED = {
     **DRAWN_FROM_COSTS,
     **DRAWN_FROM_RUNS,
 }
+AIRLINER_TABLES = ("accuracy", "modes", "left_out_modes", "cost", "limits")
+FLOWN = {
+    "select_coefficients": 1,
+    "fly": 1,
+    "fly_randomly": 1,
+    "draw_airliner": 1,
+    **{f"show_airliner_{name}": 1 for name in AIRLINER_TABLES},
+    "join_cost": 1,
+}
 LEARNT = {"manifest": 2, "train": 6, **SELECTED}
 
 
@@ -48,7 +57,18 @@ LEARNT = {"manifest": 2, "train": 6, **SELECTED}
                 **{f"join_{name}": 1 for name in ("static_tip", "natural_frequencies")},
             },
         ),
-        ("config/config.yaml", "tracking.uri", "http://127.0.0.1:9", {"tracking_store": 1}),
+        (
+            "config/sweeps/airliner_quick.yaml",
+            "spaces.1.epochs",
+            [6],
+            {"train_coefficients": 1, **FLOWN},
+        ),
+        (
+            "config/config.yaml",
+            "tracking.uri",
+            "http://127.0.0.1:9",
+            {"tracking_store": 1, "airliner_tracking": 1},
+        ),
         ("config/config.yaml", "timing.cores", 1, {}),
     ],
 )
