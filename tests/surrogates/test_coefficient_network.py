@@ -18,13 +18,16 @@ INPUTS, OUTPUTS = 25, 12
 
 def random_network(seed: int, hidden: int = 75, activation: str = "tanh") -> CoefficientNetwork:
     generator = np.random.default_rng(seed)
-    low, output_low = generator.uniform(-1e4, 1e4, INPUTS), generator.uniform(-3.0, 3.0, OUTPUTS)
+    # ranges of any size, a few times that from zero as Mach numbers and altitudes are: an input far out
+    # would lose in its scaling the digits that are compared
+    width = 10.0 ** generator.uniform(-3.0, 4.0, INPUTS)
+    low, output_low = width * generator.uniform(-4.0, 3.0, INPUTS), generator.uniform(-3.0, 3.0, OUTPUTS)
     return CoefficientNetwork(
         parameters=generator.standard_normal(INPUTS * hidden + hidden + hidden * OUTPUTS + OUTPUTS),
         hidden=hidden,
         activation=activation,
         input_low=low,
-        input_high=low + generator.uniform(0.01, 1e4, INPUTS),
+        input_high=low + width,
         output_low=output_low,
         output_high=output_low + generator.uniform(0.01, 3.0, OUTPUTS),
         input_names=tuple(f"u{k}" for k in range(INPUTS)),
