@@ -122,8 +122,18 @@ def _histories(
 
 
 def _name(ax: Axes, modes: pd.DataFrame) -> None:
-    """The name of each mode beside its eigenvalue."""
-    places = zip(modes["mode"], modes["reference_real"], modes["reference_imag"], strict=True)
-    for name, x, y in places:
-        text = str(name).removeprefix("elastic ")
-        ax.annotate(text, (x, y), xytext=(7, 2), textcoords="offset points", fontsize=6.5, color=GREY)
+    """The name of each mode beside its eigenvalue: on its left where another is close on its right."""
+    x, y = modes["reference_real"].to_numpy(), modes["reference_imag"].to_numpy()
+    width, height = np.ptp(x) or 1.0, np.ptp(y) or 1.0
+    for name, x_here, y_here in zip(modes["mode"], x, y, strict=True):
+        right, apart = (x - x_here) / width, np.abs(y - y_here) / height
+        crowded = np.any((right > 0.0) & (right < 0.3) & (apart < 0.08))
+        ax.annotate(
+            str(name).removeprefix("elastic "),
+            (x_here, y_here),
+            xytext=(-7 if crowded else 7, 2),
+            textcoords="offset points",
+            horizontalalignment="right" if crowded else "left",
+            fontsize=6.5,
+            color=GREY,
+        )
