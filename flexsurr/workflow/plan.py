@@ -12,6 +12,7 @@ from fnmatch import fnmatch
 from functools import cached_property
 from typing import Any
 
+from flexsurr.config.airliner import STUDY as AIRLINER
 from flexsurr.config.errors import ConfigurationError
 from flexsurr.config.part import values_of
 from flexsurr.config.settings import Configuration, ResolvedStudy
@@ -155,7 +156,8 @@ class Plan:
 
     def store(self) -> Job:
         """The tracking store."""
-        return {"uri": self.settings.tracking.uri, "studies": list(self.settings.studies)}
+        studies = [*self.settings.studies, *([AIRLINER] if self.settings.airliner else [])]
+        return {"uri": self.settings.tracking.uri, "studies": studies}
 
     def train(self, key: str) -> Job:
         """One training run."""

@@ -63,12 +63,7 @@ LEARNT = {"manifest": 2, "train": 6, **SELECTED}
             [6],
             {"train_coefficients": 1, **FLOWN},
         ),
-        (
-            "config/config.yaml",
-            "tracking.uri",
-            "http://127.0.0.1:9",
-            {"tracking_store": 1, "airliner_tracking": 1},
-        ),
+        ("config/config.yaml", "tracking.uri", "http://127.0.0.1:9", {"tracking_store": 1}),
         ("config/config.yaml", "timing.cores", 1, {}),
     ],
 )

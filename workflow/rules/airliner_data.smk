@@ -30,22 +30,6 @@ rule sample_aerodynamics:
         " > {log:q} 2>&1"
 
 
-rule airliner_tracking:
-    # In the store that is there already: no second process creates one.
-    input:
-        ancient(rules.tracking_store.output[0]),
-    output:
-        f"{RESULTS}/mlflow/airliner.json",
-    log:
-        f"{RESULTS}/logs/airliner_tracking.log",
-    params:
-        job=json.dumps({"uri": plan.settings.tracking.uri, "studies": ["airliner"]}),
-    message:
-        "the airliner's place in the tracking store"
-    shell:
-        "python -m flexsurr.cli.store --job {params.job:q} --output {output:q} > {log:q} 2>&1"
-
-
 rule train_coefficients:
     # The store is ancient: a new one is no reason to train anew.
     input:
@@ -53,7 +37,7 @@ rule train_coefficients:
             f"{RESULTS}/datasets/airliner/{airliner.runs[w.run_id].sampling}/shard-{{shard:04d}}.parquet",
             shard=range(airliner.shards),
         ),
-        store=ancient(rules.airliner_tracking.output[0]),
+        store=ancient(rules.tracking_store.output[0]),
     output:
         parameters=f"{RESULTS}/runs/{{run_id}}/parameters.json",
         metrics=f"{RESULTS}/runs/{{run_id}}/metrics.json",
@@ -80,7 +64,7 @@ rule select_coefficients:
         accuracy=expand(
             f"{RESULTS}/runs/{{run_id}}/accuracy.parquet", run_id=airliner.runs
         ),
-        store=ancient(rules.airliner_tracking.output[0]),
+        store=ancient(rules.tracking_store.output[0]),
     output:
         selection=f"{RESULTS}/selected/airliner.json",
         table=f"{RESULTS}/tables/airliner_accuracy.csv",
