@@ -9,6 +9,7 @@ import pytest
 
 from flexsurr.report import TABLES
 from flexsurr.storage import read_manifest, read_shards
+from flexsurr.workflow.airliner_plan import AirlinerPlan
 
 BEAM = "cantilever"
 
@@ -51,6 +52,18 @@ def test_every_figure_and_table_is_there(quick):
     assert (quick.results / "report.html").stat().st_size > 100_000
 
 
+def test_the_airliner_is_there_and_its_costs_stand_among_the_others(quick):
+    figures = {path.stem for path in (quick.results / "figures" / "airliner").glob("*.png")}
+    assert figures >= {*(f"figure_{number}" for number in range(16, 22)), "coefficient_errors"}
+    for name in ("accuracy", "modes", "left_out_modes", "cost", "limits"):
+        assert len(pd.read_csv(quick.results / "tables" / f"airliner_{name}.csv")) > 0
+        assert (quick.results / "tables" / "airliner" / f"airliner_{name}.html").is_file()
+    cost = pd.read_csv(quick.results / "tables" / "cost.csv")
+    flown = cost[cost["study"] == "airliner"]
+    assert {"vlm_rebuild", "vlm_frozen", "quadratic", "network"} <= set(flown["model"])
+    assert set(flown["response"]) == {"manoeuvre"}
+
+
 def test_the_dataset_is_whole_and_split_by_trajectory(quick):
     for variant in ("hamiltonian", "as_printed"):
         manifest = read_manifest(quick.results / "datasets" / BEAM / variant / "manifest.json")
@@ -66,7 +79,8 @@ def test_the_dataset_is_whole_and_split_by_trajectory(quick):
 
 def test_every_run_is_recorded_and_judged(quick):
     runs = quick.plan.runs
-    assert {path.name for path in (quick.results / "runs").iterdir()} == set(runs)
+    of_the_airliner = AirlinerPlan.load(quick.root, quick.plan.settings.airliner).runs
+    assert {path.name for path in (quick.results / "runs").iterdir()} == {*runs, *of_the_airliner}
     for key, run in runs.items():
         folder = quick.results / "runs" / key
         metrics = json.loads((folder / "metrics.json").read_text())
