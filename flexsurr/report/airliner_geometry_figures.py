@@ -76,7 +76,8 @@ def figure_17(model: StickModel, centre_of_gravity: Array) -> Figure:
     """Every lumped mass where it is, its area in proportion, over the beams; and the parts' sum."""
     figure = new_figure(PAGE_IN, 5.9)
     figure.set_layout_engine("constrained", compress=True)
-    top, side = figure.subplots(2, 1, sharex=True, height_ratios=(37.0, 15.0))
+    # equal aspects leave the two of different widths, so each has its own numbers
+    top, side = figure.subplots(2, 1, height_ratios=(37.0, 15.0))
     masses = model.skeleton.masses
     for ax, across in ((top, 1), (side, 2)):
         for element in model.skeleton.elements:
