@@ -76,6 +76,15 @@ def fly_all(
                     "completed": trajectory.completed,
                 }
             )
+        log.info(
+            "flight %d of %d: %s of %.1f deg at Mach %.3f, %d aerodynamics",
+            place + 1,
+            len(flights),
+            flight.control,
+            flight.amplitude_deg,
+            flight.condition.mach,
+            len(flown_by),
+        )
         for row in rows[-len(flown_by) :] if REFERENCE in flown_by else []:
             if (model := str(row["model"])) != REFERENCE:
                 pair = flown_by[REFERENCE][1], flown_by[model][1]
