@@ -1,6 +1,7 @@
 """Learned right-hand sides: architectures, scaling, compiled and saved forms."""
 
 from flexsurr.surrogates.activations import ACTIVATIONS
+from flexsurr.surrogates.archive import SurrogateFileError
 from flexsurr.surrogates.compiled import CompiledSurrogate, compiled
 from flexsurr.surrogates.dissipative_hnn import DissipativeHNN
 from flexsurr.surrogates.hnn import HNN
@@ -12,7 +13,7 @@ from flexsurr.surrogates.polynomial import PolynomialHamiltonian
 from flexsurr.surrogates.port_hamiltonian import PortHamiltonian
 from flexsurr.surrogates.port_hamiltonian_network import NetworkPortHamiltonian
 from flexsurr.surrogates.port_hamiltonian_polynomial import PolynomialPortHamiltonian
-from flexsurr.surrogates.saved import SurrogateFileError, load, load_model, save
+from flexsurr.surrogates.saved import load, load_model, save
 from flexsurr.surrogates.scaling import (
     FeatureScaling,
     PairScaling,

@@ -4,21 +4,18 @@ What the study puts in place of its vortex lattice (25 features, 75 neurons, 12 
 other surrogates it is no right-hand side but a part of one.
 """
 
-import json
 import math
-import zipfile
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from flexsurr.simulation.mapping import CompiledMapping, implements_mapping
 from flexsurr.simulation.rhs import Array
-from flexsurr.storage import replacing
 from flexsurr.surrogates.activations import ACTIVATIONS, value
-from flexsurr.surrogates.saved import SurrogateFileError
+from flexsurr.surrogates.archive import read_archive, write_archive
 
 FORMAT = "flexsurr coefficient network 1"
 ARRAYS = ("parameters", "input_low", "input_high", "output_low", "output_high")
@@ -139,40 +136,24 @@ def _coefficient_network(kernel, u, y, work):
 def save_coefficient_network(network: CoefficientNetwork, path: str | Path) -> None:
     """Write `network` to `path` (.npz) whole: beside its place first, then moved there."""
     header = {
-        "format": FORMAT,
         "hidden": network.hidden,
         "activation": network.activation,
         "input_names": network.input_names,
         "output_names": network.output_names,
     }
-    arrays = {name: getattr(network, name) for name in ARRAYS}
-    with replacing(Path(path)) as beside, beside.open("wb") as file:
-        np.savez(file, allow_pickle=False, header=np.array(json.dumps(header)), **arrays)
+    write_archive(path, FORMAT, header, {name: getattr(network, name) for name in ARRAYS})
 
 
 def load_coefficient_network(path: str | Path) -> CoefficientNetwork:
     """The network in `path`. Raises SurrogateFileError for a damaged or foreign file, OSError for none."""
-    try:
-        with Path(path).open("rb") as content, np.load(content, allow_pickle=False) as file:
-            arrays = dict(file)
-    except FileNotFoundError:
-        raise
-    except (OSError, EOFError, ValueError, TypeError, zipfile.BadZipFile) as error:
-        raise SurrogateFileError(f"{path}: not a readable .npz file ({error})") from None
-    try:
-        header = json.loads(str(arrays["header"]))
-        if header["format"] != FORMAT:
-            raise SurrogateFileError(f"{path}: format {header['format']!r}, expected {FORMAT!r}")
-        values = {name: np.ascontiguousarray(arrays[name], dtype=np.float64) for name in ARRAYS}
-        if not all(np.all(np.isfinite(array)) for array in values.values()):
-            raise ValueError("numbers that are not finite")
-        return CoefficientNetwork(
-            **values,
-            hidden=header["hidden"],
-            activation=header["activation"],
-            input_names=tuple(header["input_names"]),
-            output_names=tuple(header["output_names"]),
-        )
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
-        detail = f"no {error}" if isinstance(error, KeyError) else error
-        raise SurrogateFileError(f"{path}: not a coefficient network of flexsurr ({detail})") from None
+    return read_archive(path, FORMAT, "a coefficient network", _network)
+
+
+def _network(header: dict[str, Any], arrays: dict[str, Array]) -> CoefficientNetwork:
+    return CoefficientNetwork(
+        **{name: arrays[name] for name in ARRAYS},
+        hidden=header["hidden"],
+        activation=header["activation"],
+        input_names=tuple(header["input_names"]),
+        output_names=tuple(header["output_names"]),
+    )

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from flexsurr.simulation.rhs import Array, CompiledModel, evaluate, implements_rhs, rhs
+from flexsurr.simulation.rhs import Array, evaluate, implements_rhs, rhs
 from flexsurr.surrogates.learned_map import LearnedMap
 from flexsurr.surrogates.potentials import add_gradient
 
@@ -66,7 +66,7 @@ class LearnedLoad:
     other outputs. Raises ValueError where their numbers don't fit.
     """
 
-    model: CompiledModel
+    model: Any  # a CompiledModel; what more it has, as an energy, is passed on
     positions: LearnedMap
     force: Array
     history: History
@@ -101,7 +101,7 @@ class LearnedLoad:
     @property
     def energy(self) -> Any:
         """The model's own energy, without the work of the load; AttributeError where it has none."""
-        return self.model.energy  # type: ignore[attr-defined]  # not every CompiledModel has one
+        return self.model.energy
 
     @cached_property
     def _compiled(self) -> tuple[NamedTuple, int]:

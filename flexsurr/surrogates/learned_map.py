@@ -5,22 +5,19 @@ positions exactly; the same map gives the outputs. Angles are learned as sine an
 themselves where they pass ±π.
 """
 
-import json
-import zipfile
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import ClassVar, NamedTuple, Self
+from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
 from flexsurr.simulation.rhs import Array
-from flexsurr.storage import replacing
 from flexsurr.surrogates.activations import ACTIVATIONS
+from flexsurr.surrogates.archive import read_archive, write_archive
 from flexsurr.surrogates.monomials import Exponents, differentiate, evaluate_monomials, factors
 from flexsurr.surrogates.potentials import NetworkPotential, PolynomialPotential
-from flexsurr.surrogates.saved import SurrogateFileError
 
 FORMAT = "flexsurr learned map 1"
 
@@ -54,7 +51,7 @@ class LearnedMap(ABC):
         """Compiled form of a map to one number, and the size of its workspace; ValueError for another."""
 
     @abstractmethod
-    def arrays(self) -> dict[str, Array]:
+    def arrays(self) -> dict[str, np.ndarray]:
         """What makes this map, by the names of its attributes."""
 
     def generalised_force(self, eta: Array, force: Array) -> Array:
@@ -127,11 +124,11 @@ class PolynomialMap(LearnedMap):
         r = self.scales.size
         return kernel, r * (r + 3) + 2 * len(self.exponents)
 
-    def arrays(self) -> dict[str, Array]:
+    def arrays(self) -> dict[str, np.ndarray]:
         """What makes this map."""
         return {
             "scales": self.scales,
-            "exponents": self.exponents.astype(np.float64),
+            "exponents": self.exponents,
             "coefficients": self.coefficients,
         }
 
@@ -187,7 +184,7 @@ class NetworkMap(LearnedMap):
         tag = ACTIVATIONS[self.activation].tag
         return NetworkPotential(tag, layer, self.readout[:, 0].copy()), self.scales.size + self.biases.size
 
-    def arrays(self) -> dict[str, Array]:
+    def arrays(self) -> dict[str, np.ndarray]:
         """What makes this map."""
         names = ("scales", "weights", "biases", "readout", "constant")
         return {name: getattr(self, name) for name in names}
@@ -195,28 +192,20 @@ class NetworkMap(LearnedMap):
 
 def save_map(learned: LearnedMap, path: str | Path) -> None:
     """Write `learned` to `path` whole: beside its place first, then moved there."""
-    header = {"format": FORMAT, "kind": learned.kind, "output_names": learned.output_names}
+    header = {"kind": learned.kind, "output_names": learned.output_names}
     if isinstance(learned, NetworkMap):
         header["activation"] = learned.activation
-    with replacing(Path(path)) as beside, beside.open("wb") as file:
-        np.savez(file, allow_pickle=False, header=np.array(json.dumps(header)), **learned.arrays())
+    write_archive(path, FORMAT, header, learned.arrays())
 
 
 def load_map(path: str | Path) -> LearnedMap:
     """The map in `path`. Raises SurrogateFileError for a damaged or foreign file, OSError for none."""
-    try:
-        with Path(path).open("rb") as content, np.load(content, allow_pickle=False) as file:
-            arrays = dict(file)
-        header = json.loads(str(arrays.pop("header")))
-        if header["format"] != FORMAT:
-            raise SurrogateFileError(f"{path}: format {header['format']!r}, expected {FORMAT!r}")
-        arrays = {name: np.ascontiguousarray(array, dtype=np.float64) for name, array in arrays.items()}
-        names = tuple(header["output_names"])
-        if header["kind"] == PolynomialMap.kind:
-            exponents = arrays.pop("exponents").astype(np.int64)
-            return PolynomialMap(output_names=names, exponents=exponents, **arrays)
-        return NetworkMap(output_names=names, activation=header["activation"], **arrays)
-    except FileNotFoundError:
-        raise
-    except (OSError, EOFError, KeyError, TypeError, ValueError, AttributeError, zipfile.BadZipFile) as error:
-        raise SurrogateFileError(f"{path}: not a learned map of flexsurr ({error})") from None
+    return read_archive(path, FORMAT, "a learned map", _map)
+
+
+def _map(header: dict[str, Any], arrays: dict[str, Any]) -> LearnedMap:
+    names = tuple(header["output_names"])
+    if header["kind"] == PolynomialMap.kind:
+        exponents = arrays.pop("exponents").astype(np.int64, casting="safe")
+        return PolynomialMap(output_names=names, exponents=exponents, **arrays)
+    return NetworkMap(output_names=names, activation=header["activation"], **arrays)

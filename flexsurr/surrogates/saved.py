@@ -1,7 +1,5 @@
 """Surrogates on disk: one .npz of arrays with a JSON header that says what they are."""
 
-import json
-import zipfile
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Literal
@@ -9,7 +7,7 @@ from typing import Any, Literal
 import numpy as np
 
 from flexsurr.simulation.rhs import Model
-from flexsurr.storage import replacing
+from flexsurr.surrogates.archive import read_archive, write_archive
 from flexsurr.surrogates.compiled import compiled
 from flexsurr.surrogates.dissipative_hnn import DissipativeHNN
 from flexsurr.surrogates.hnn import HNN
@@ -24,54 +22,31 @@ FORMAT = "flexsurr surrogate 1"
 NETWORKS = {network.architecture: network for network in (MLP, HNN, DissipativeHNN)}
 
 
-class SurrogateFileError(Exception):
-    """A file that cannot be read as a surrogate; the message names it."""
-
-
 def save(surrogate: Surrogate, path: str | Path) -> None:
     """Write `surrogate` to `path` whole: beside its place first, then moved there."""
     header = {
-        "format": FORMAT,
         "architecture": surrogate.architecture,
         "state_names": surrogate.state_names,
         "state_units": surrogate.state_units,
         "scaling": asdict(surrogate.scaling),
         **surrogate.settings(),
     }
-    arrays = {"header": np.array(json.dumps(header)), "parameters": surrogate.parameters}
+    arrays: dict[str, np.ndarray] = {"parameters": surrogate.parameters}
     if isinstance(surrogate, PolynomialHamiltonian | PolynomialPortHamiltonian):
         arrays["exponents"] = surrogate.exponents
     if isinstance(surrogate, NetworkPortHamiltonian):
         arrays["floor"] = surrogate.floor
-    with replacing(Path(path)) as beside, beside.open("wb") as file:
-        np.savez(file, allow_pickle=False, **arrays)
+    write_archive(path, FORMAT, header, arrays)
 
 
 def load(path: str | Path) -> Surrogate:
     """The surrogate in `path`. Raises SurrogateFileError for a damaged or foreign file, OSError for none."""
-    try:
-        with Path(path).open("rb") as content, np.load(content, allow_pickle=False) as file:
-            arrays = dict(file)
-    except FileNotFoundError:
-        raise
-    except (OSError, EOFError, ValueError, TypeError, zipfile.BadZipFile) as error:
-        raise SurrogateFileError(f"{path}: not a readable .npz file ({error})") from None
-    try:
-        header = json.loads(str(arrays["header"]))
-        if header["format"] != FORMAT:
-            raise SurrogateFileError(f"{path}: format {header['format']!r}, expected {FORMAT!r}")
-        return _surrogate(header, arrays)
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
-        detail = f"no {error}" if isinstance(error, KeyError) else error
-        raise SurrogateFileError(f"{path}: not a surrogate of flexsurr ({detail})") from None
+    return read_archive(path, FORMAT, "a surrogate", _surrogate)
 
 
 def _surrogate(header: dict[str, Any], arrays: dict[str, np.ndarray]) -> Surrogate:
-    parameters = np.ascontiguousarray(arrays["parameters"], dtype=np.float64)
-    if not np.all(np.isfinite(parameters)):
-        raise ValueError("parameters that are not finite")
     common: dict[str, Any] = {
-        "parameters": parameters,
+        "parameters": arrays["parameters"],
         "scaling": _scaling(header["scaling"]),
         "state_names": tuple(header["state_names"]),
         "state_units": tuple(header["state_units"]),
@@ -85,8 +60,7 @@ def _surrogate(header: dict[str, Any], arrays: dict[str, np.ndarray]) -> Surroga
         return polynomial(**common, exponents=arrays["exponents"].astype(np.int64, casting="safe"))
     common |= {"hidden": tuple(header["hidden"]), "activation": header["activation"]}
     if architecture == NetworkPortHamiltonian.architecture:
-        floor = np.ascontiguousarray(arrays["floor"], dtype=np.float64)
-        return NetworkPortHamiltonian(**common, floor=floor, even=bool(header["even"]))
+        return NetworkPortHamiltonian(**common, floor=arrays["floor"], even=bool(header["even"]))
     return NETWORKS[architecture](**common)
 
 

@@ -6,12 +6,12 @@ import torch
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from flexsurr.surrogates.archive import SurrogateFileError
 from flexsurr.surrogates.coefficient_network import (
     CoefficientNetwork,
     load_coefficient_network,
     save_coefficient_network,
 )
-from flexsurr.surrogates.saved import SurrogateFileError
 
 INPUTS, OUTPUTS = 25, 12
 

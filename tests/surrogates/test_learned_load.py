@@ -126,6 +126,11 @@ def test_round_trip_and_damage(kind, tmp_path):
     eta = 0.5 * SCALES
     assert (type(loaded), loaded.output_names) == (type(learned), learned.output_names)
     np.testing.assert_array_equal(loaded(eta), learned(eta))
+    spoilt = tmp_path / "spoilt.npz"
+    with np.load(path) as file:
+        np.savez(spoilt, **{**file, "scales": np.full_like(file["scales"], np.nan)})
+    with pytest.raises(SurrogateFileError, match=r"spoilt\.npz: .*scales that are not finite"):
+        load_map(spoilt)
     content = path.read_bytes()
     for size in range(0, len(content), 97):
         path.write_bytes(content[:size])
