@@ -29,7 +29,7 @@ def write_archive(
 def read_archive(
     path: str | Path, form: str, what: str, build: Callable[[dict[str, Any], dict[str, Any]], Kept]
 ) -> Kept:
-    """What `build(header, arrays)` makes of the file; its floating-point arrays are contiguous float64, and finite.
+    """What `build(header, arrays)` makes of the file; arrays are integers, or contiguous finite float64.
 
     Raises SurrogateFileError for a damaged or foreign file, saying that it is not `what`; OSError for none.
     """
