@@ -22,7 +22,7 @@ from flexsurr.evaluation.energy import energy_table
 from flexsurr.evaluation.energy_balance import energy_balance
 from flexsurr.evaluation.held_out import held_out_errors
 from flexsurr.evaluation.responses import response_table
-from flexsurr.evaluation.selection import long_response_errors
+from flexsurr.evaluation.selection import long_response_errors, long_responses
 from flexsurr.evaluation.statics import natural_frequencies, static_tip
 from flexsurr.evaluation.validation import validation_table
 
@@ -33,6 +33,7 @@ __all__ = [
     "energy_table",
     "held_out_errors",
     "long_response_errors",
+    "long_responses",
     "natural_frequencies",
     "response_table",
     "static_tip",

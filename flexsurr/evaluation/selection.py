@@ -2,35 +2,47 @@
 
 import math
 import statistics
+from collections.abc import Iterable
 from typing import Any
 
 from flexsurr.beam import ModalBasis, reduced_order
 from flexsurr.config.study import Study, Variant
 from flexsurr.evaluation.accuracy import tip_error
-from flexsurr.evaluation.cases import FIRST_SELECTION_CASE, free_cases, reference_solutions, sample_times
+from flexsurr.evaluation.cases import (
+    FIRST_SELECTION_CASE,
+    Reference,
+    free_cases,
+    reference_solutions,
+    sample_times,
+)
 from flexsurr.evaluation.energy import energy_error_percent
 from flexsurr.simulation import simulate
 from flexsurr.surrogates import compiled
 
 
+def long_responses(study: Study, basis: ModalBasis, variant: Variant) -> list[Reference]:
+    """`study.evaluation.long_responses` free responses of the reference from states no training has seen."""
+    settings = study.evaluation
+    t = sample_times(settings.duration_s, settings.output_step_s)
+    cases = free_cases(basis, study, FIRST_SELECTION_CASE, settings.long_responses)
+    return list(reference_solutions(basis, variant, cases, t, settings.reference_integrator))
+
+
 def long_response_errors(
-    study: Study, basis: ModalBasis, variant: Variant, surrogate: Any
+    study: Study, basis: ModalBasis, variant: Variant, surrogate: Any, references: Iterable[Reference]
 ) -> dict[str, float | int | None]:
-    """Errors of `study.evaluation.long_responses` free responses from states no training has seen.
+    """Errors of the surrogate's responses from where `references` (of `long_responses`) start.
 
     Keys as in a run's metrics: long_response_error_percent_worst and _median (largest tip error over
     the reference's largest tip displacement), energy_drift_percent (worst, of the reference's exact
     Hamiltonian along the surrogate's trajectory) and diverged, the number of responses that did not
     reach their end. A figure that has no finite value is None; a diverged response counts as the worst.
     """
-    settings = study.evaluation
-    t = sample_times(settings.duration_s, settings.output_step_s)
     model = compiled(surrogate)
     exact = reduced_order(basis, variant, "numpy")
     errors, drifts, diverged = [], [], 0
-    cases = free_cases(basis, study, FIRST_SELECTION_CASE, settings.long_responses)
-    for reference in reference_solutions(basis, variant, cases, t, settings.reference_integrator):
-        trajectory = simulate(model, t, reference.case.x0, settings.judging_integrator)
+    for reference in references:
+        trajectory = simulate(model, reference.t, reference.case.x0, study.evaluation.judging_integrator)
         if trajectory.completed:
             errors.append(tip_error(reference, exact.tip(trajectory.x)).whole_percent)
             drifts.append(energy_error_percent(basis.structure, reference, exact.energy(trajectory.x), 0.0))

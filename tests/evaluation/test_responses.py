@@ -2,7 +2,7 @@
 
 import pytest
 
-from flexsurr.evaluation import long_response_errors, response_table, validation_table
+from flexsurr.evaluation import long_response_errors, long_responses, response_table, validation_table
 from flexsurr.evaluation.responses import RESPONSE_COLUMNS
 from flexsurr.evaluation.validation import VALIDATION_COLUMNS
 
@@ -31,20 +31,24 @@ def test_a_response_that_explodes_ends_its_rows(study, basis, exploding):
     assert table.notna().all(axis=None)
 
 
+def errors_of(study, basis, variant, surrogate):
+    return long_response_errors(study, basis, variant, surrogate, long_responses(study, basis, variant))
+
+
 def test_an_exact_surrogate_has_next_to_no_long_response_error(study, basis, fitted):
-    errors = long_response_errors(study, basis, "hamiltonian", fitted)
+    errors = errors_of(study, basis, "hamiltonian", fitted)
     assert errors["diverged"] == 0
     assert errors["long_response_error_percent_median"] <= errors["long_response_error_percent_worst"] < 1e-3
     assert errors["energy_drift_percent"] < 1e-3
 
 
 def test_on_the_printed_field_the_same_surrogate_errs(study, basis, fitted):
-    errors = long_response_errors(study, basis, "as_printed", fitted)
+    errors = errors_of(study, basis, "as_printed", fitted)
     assert errors["long_response_error_percent_worst"] > 0.1
 
 
 def test_an_exploding_surrogate_diverges_and_claims_nothing(study, basis, exploding):
-    assert long_response_errors(study, basis, "hamiltonian", exploding) == {
+    assert errors_of(study, basis, "hamiltonian", exploding) == {
         "long_response_error_percent_worst": None,
         "long_response_error_percent_median": None,
         "energy_drift_percent": None,
