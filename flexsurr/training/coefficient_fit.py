@@ -1,7 +1,6 @@
 """One trial on the airliner's samples: a network of coefficients, from random weights to the best ones."""
 
 import math
-import time
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -12,12 +11,10 @@ import pandas as pd
 from flexsurr.config.coefficient_sweep import CoefficientTrial
 from flexsurr.simulation.rhs import Array
 from flexsurr.surrogates.coefficient_network import CoefficientNetwork, shapes_of
-from flexsurr.training.checkpoint import read_checkpoint, remove_checkpoint, write_checkpoint
 from flexsurr.training.coefficient_data import CoefficientData
-from flexsurr.training.fitting import CHECKPOINT_EVERY_S, Report
+from flexsurr.training.epochs import Limits, Report, run_epochs
 from flexsurr.training.levenberg_marquardt import LevenbergMarquardt
 from flexsurr.training.optimiser import Optimiser
-from flexsurr.training.progress import Progress
 from flexsurr.training.structured_normal_equations import CoefficientObjective
 
 
@@ -56,7 +53,8 @@ def fit_coefficients(
 
     Ends after the trial's epochs or `time_limit_s`, or when the optimiser has nothing left to do, and
     keeps the weights that validated best. `report(epoch, train_loss, validation_loss, wall_s)` is called
-    after each epoch. A loss that is not finite ends the fit as failed.
+    after each epoch. A loss that is not finite ends the fit as failed, and a fit of which no epoch
+    validates better than its start has failed too.
     """
     folder = Path(folder)
     assert trial.hidden is not None  # a trial of a network has all three
@@ -67,29 +65,15 @@ def fit_coefficients(
     validation = CoefficientObjective.of(x[data.held_out], y[data.held_out], trial.hidden, trial.activation)
     start = initial_weights(x.shape[1], trial.hidden, y.shape[1], trial.seed)
     optimiser = _optimiser(trial, training, start)
-    belongs_to = {"trial": trial.model_dump(mode="json"), "dataset": data.sha256}
-    progress = Progress(validation.loss(start), start)
-    states = read_checkpoint(folder, belongs_to)
-    if states is not None:
-        progress = Progress.restored(states["progress"])
-        optimiser.restore(states["optimiser"])
-    # the clock of this process, set forward by what an earlier one has spent
-    began = time.perf_counter() - progress.wall_s
-    saved = time.perf_counter()
-    reason = ""
-    while not (reason or _at_end(trial, progress, optimiser)):
-        train_loss = optimiser.epoch()
-        validation_loss = validation.loss(optimiser.parameters)
-        wall_s = time.perf_counter() - began
-        if not (math.isfinite(train_loss) and math.isfinite(validation_loss)):
-            reason = f"the loss is not finite after epoch {progress.epoch + 1}"
-        progress.add(wall_s, train_loss, validation_loss, optimiser.parameters)
-        if report is not None:
-            report(progress.epoch, train_loss, validation_loss, wall_s)
-        if not reason and time.perf_counter() - saved > CHECKPOINT_EVERY_S:
-            write_checkpoint(folder, belongs_to, progress=progress.state(), optimiser=optimiser.state())
-            saved = time.perf_counter()
-    remove_checkpoint(folder)
+    progress, reason = run_epochs(
+        optimiser,
+        validation,
+        start,
+        Limits(trial.epochs, time_limit_s=trial.time_limit_s),
+        folder,
+        {"trial": trial.model_dump(mode="json"), "dataset": data.sha256},
+        report,
+    )
     best = progress.best_parameters
     return CoefficientFit(
         network=CoefficientNetwork(
@@ -112,12 +96,6 @@ def fit_coefficients(
         validation_nmse=validation.loss(best),
         history=progress.history(),
     )
-
-
-def _at_end(trial: CoefficientTrial, progress: Progress, optimiser: Optimiser) -> bool:
-    assert trial.epochs is not None
-    late = trial.time_limit_s is not None and progress.wall_s >= trial.time_limit_s
-    return bool(progress.epoch >= trial.epochs or late or optimiser.finished)
 
 
 def _optimiser(trial: CoefficientTrial, objective: CoefficientObjective, parameters: Array) -> Optimiser:

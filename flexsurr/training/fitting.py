@@ -5,9 +5,8 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal, Protocol
+from typing import Literal
 
-import numpy as np
 import pandas as pd
 
 from flexsurr.config.sweep import Trial
@@ -24,8 +23,8 @@ from flexsurr.surrogates import (
     feature_scaling,
 )
 from flexsurr.training.adam import Adam
-from flexsurr.training.checkpoint import read_checkpoint, remove_checkpoint, write_checkpoint
 from flexsurr.training.dataset import Dataset
+from flexsurr.training.epochs import Limits, Loss, Report, run_epochs
 from flexsurr.training.initialisation import initial_parameters
 from flexsurr.training.inverse_dynamics import NotPositiveDefinite, fit_port_hamiltonian
 from flexsurr.training.least_squares import fit_polynomial
@@ -37,15 +36,12 @@ from flexsurr.training.port_hamiltonian_objective import PortHamiltonianObjectiv
 from flexsurr.training.port_hamiltonian_training import InverseThenForward, untrained_port_hamiltonian
 from flexsurr.training.progress import Progress
 
-CHECKPOINT_EVERY_S = 5.0
 NETWORKS: dict[str, type[Network]] = {form.architecture: form for form in (HNN, MLP, DissipativeHNN)}
 SCALINGS: dict[str, Callable[[Array, Array], StateScaling]] = {
     "canonical": canonical_scaling,
     "per_feature": feature_scaling,
 }
 FIRST_ORDER = ("adam", "adam_cosine")
-
-Report = Callable[[int, float, float, float], None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,32 +78,16 @@ def fit(trial: Trial, dataset: Dataset, folder: str | Path, report: Report | Non
     if trial.optimiser == "least_squares":
         return _fit_linear(trial, dataset, report)
     network, training, validation, optimiser = _begun(trial, dataset)
-    belongs_to = {"trial": trial.model_dump(mode="json"), "dataset": dataset.sha256}
-    progress = Progress(validation.loss(network.parameters), network.parameters)
-    states = read_checkpoint(folder, belongs_to)
-    if states is not None:
-        progress = Progress.restored(states["progress"])
-        optimiser.restore(states["optimiser"])
-    # the clock of this process, set forward by what an earlier one has spent
-    start = time.perf_counter() - progress.wall_s
-    saved = time.perf_counter()
-    reason = ""
-    while not (reason or _at_end(trial, progress, optimiser)):
-        train_loss = optimiser.epoch()
-        validation_loss = validation.loss(optimiser.parameters.astype(np.float64))
-        wall_s = time.perf_counter() - start
-        if not (math.isfinite(train_loss) and math.isfinite(validation_loss)):
-            reason = f"the loss is not finite after epoch {progress.epoch + 1}"
-        progress.add(wall_s, train_loss, validation_loss, optimiser.parameters)
-        if report is not None:
-            report(progress.epoch, train_loss, validation_loss, wall_s)
-        if not reason and time.perf_counter() - saved > CHECKPOINT_EVERY_S:
-            write_checkpoint(folder, belongs_to, progress=progress.state(), optimiser=optimiser.state())
-            saved = time.perf_counter()
-    if not reason and progress.best_epoch == 0:
-        reason = f"none of {progress.epoch} epochs validated better than the weights it began with"
+    progress, reason = run_epochs(
+        optimiser,
+        validation,
+        network.parameters,
+        Limits(trial.epochs, trial.patience, trial.time_limit_s),
+        folder,
+        {"trial": trial.model_dump(mode="json"), "dataset": dataset.sha256},
+        report,
+    )
     network = replace(network, parameters=progress.best_parameters)
-    remove_checkpoint(folder)
     return Fit(
         surrogate=network,
         status="failed" if reason else "finished",
@@ -123,15 +103,7 @@ def fit(trial: Trial, dataset: Dataset, folder: str | Path, report: Report | Non
     )
 
 
-class _Loss(Protocol):
-    """The nmse as a function of the weights."""
-
-    def loss(self, parameters: Array) -> float: ...
-
-
-def _begun(
-    trial: Trial, dataset: Dataset
-) -> tuple[Network | NetworkPortHamiltonian, _Loss, _Loss, Optimiser]:
+def _begun(trial: Trial, dataset: Dataset) -> tuple[Network | NetworkPortHamiltonian, Loss, Loss, Optimiser]:
     """Random weights, their losses over training and validation samples, and what will make them better."""
     training = dataset.x_train, dataset.dx_train
     validation = dataset.x_validation, dataset.dx_validation
@@ -144,12 +116,6 @@ def _begun(
     network = _untrained(trial, dataset)
     objective = Objective.of(network, *training)
     return network, objective, Objective.of(network, *validation), _optimiser(trial, objective)
-
-
-def _at_end(trial: Trial, progress: Progress, optimiser: Optimiser) -> bool:
-    stalled = trial.patience is not None and progress.stalled_for >= trial.patience
-    late = trial.time_limit_s is not None and progress.wall_s >= trial.time_limit_s
-    return bool(progress.epoch >= trial.epochs or stalled or late or optimiser.finished)
 
 
 def _untrained(trial: Trial, dataset: Dataset) -> Network:

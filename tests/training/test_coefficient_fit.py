@@ -7,7 +7,6 @@ import pytest
 
 from flexsurr.config.coefficient_sweep import CoefficientSpace, CoefficientTrial
 from flexsurr.storage import SampleMetadata, Samples
-from flexsurr.training import coefficient_fit
 from flexsurr.training.coefficient_accuracy import accuracy, held_out_errors
 from flexsurr.training.coefficient_baselines import fit_coefficient_polynomial
 from flexsurr.training.coefficient_data import coefficient_data
@@ -91,7 +90,7 @@ def test_a_network_learns_and_its_losses_are_those_of_the_table(tmp_path):
 
 def test_interrupted_and_resumed_it_comes_to_the_same_weights(tmp_path, monkeypatch):
     whole = fit_coefficients(TRIAL, DATA, tmp_path / "whole")
-    monkeypatch.setattr(coefficient_fit, "CHECKPOINT_EVERY_S", 0.0)
+    monkeypatch.setattr("flexsurr.training.epochs.CHECKPOINT_EVERY_S", 0.0)
 
     def interrupt(epoch, *losses):
         if epoch == 12:

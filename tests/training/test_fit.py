@@ -60,7 +60,7 @@ def test_what_a_fit_says_is_so(name, tmp_path):
 def test_killed_and_resumed_is_as_uninterrupted(name, tmp_path, monkeypatch):
     trial = ITERATIVE[name]
     expected = fit(trial, DATASET, tmp_path / "whole")
-    monkeypatch.setattr("flexsurr.training.fitting.CHECKPOINT_EVERY_S", 0.0)
+    monkeypatch.setattr("flexsurr.training.epochs.CHECKPOINT_EVERY_S", 0.0)
     for epoch in (7, 16):
         with pytest.raises(Killed):
             fit(trial, DATASET, tmp_path / "killed", kill_at(epoch))
@@ -77,7 +77,7 @@ def test_killed_and_resumed_is_as_uninterrupted(name, tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("other", ["seed", "dataset", "damaged", "foreign"])
 def test_a_checkpoint_of_something_else_is_not_used(other, tmp_path, monkeypatch):
-    monkeypatch.setattr("flexsurr.training.fitting.CHECKPOINT_EVERY_S", 0.0)
+    monkeypatch.setattr("flexsurr.training.epochs.CHECKPOINT_EVERY_S", 0.0)
     with pytest.raises(Killed):
         fit(LM, DATASET, tmp_path, kill_at(5))
     trial, dataset, path = LM, DATASET, tmp_path / NAME

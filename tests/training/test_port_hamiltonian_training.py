@@ -114,7 +114,7 @@ def test_killed_in_either_stage_and_resumed_is_as_uninterrupted(tmp_path, monkey
     monkeypatch.setattr("flexsurr.training.port_hamiltonian_training.INVERSE_EPOCHS", 5)
     trial = TRIAL.model_copy(update={"epochs": 12})
     expected = fit(trial, EVEN, tmp_path / "whole")
-    monkeypatch.setattr("flexsurr.training.fitting.CHECKPOINT_EVERY_S", 0.0)
+    monkeypatch.setattr("flexsurr.training.epochs.CHECKPOINT_EVERY_S", 0.0)
     for last in (3, 6, 9):
 
         def kill(epoch, *_, last=last):

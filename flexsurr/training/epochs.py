@@ -1,0 +1,85 @@
+"""Epoch after epoch, whatever is fitted: validated, timed, reported, kept from a kill, and ended."""
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+
+from flexsurr.simulation.rhs import Array
+from flexsurr.training.checkpoint import read_checkpoint, remove_checkpoint, write_checkpoint
+from flexsurr.training.optimiser import Optimiser
+from flexsurr.training.progress import Progress
+
+CHECKPOINT_EVERY_S = 5.0
+
+Report = Callable[[int, float, float, float], None]
+
+
+class Loss(Protocol):
+    """The nmse as a function of the weights."""
+
+    def loss(self, parameters: Array) -> float:
+        """The nmse at `parameters`."""
+        ...
+
+
+@dataclass(frozen=True)
+class Limits:
+    """When to stop: after `epochs`, after `patience` of them without better validation, after a time."""
+
+    epochs: int
+    patience: int | None = None
+    time_limit_s: float | None = None
+
+
+def run_epochs(
+    optimiser: Optimiser,
+    validation: Loss,
+    start: Array,
+    limits: Limits,
+    folder: Path,
+    belongs_to: dict[str, Any],
+    report: Report | None,
+) -> tuple[Progress, str]:
+    """What became of training from the weights `start`, and why it failed, or "".
+
+    Resumes from the checkpoint in `folder` that `belongs_to` the same; there is none when it ends, which is
+    at the limits or when the optimiser has nothing left to do. `report(epoch, train_loss, validation_loss,
+    wall_s)` is called after each epoch. A loss that is not finite ends it as failed, and training of which
+    no epoch validates better than its start has failed too.
+    """
+    progress = Progress(validation.loss(start), start)
+    states = read_checkpoint(folder, belongs_to)
+    if states is not None:
+        progress = Progress.restored(states["progress"])
+        optimiser.restore(states["optimiser"])
+    # the clock of this process, set forward by what an earlier one has spent
+    began = time.perf_counter() - progress.wall_s
+    saved = time.perf_counter()
+    reason = ""
+    while not (reason or _at_end(limits, progress, optimiser)):
+        train_loss = optimiser.epoch()
+        validation_loss = validation.loss(optimiser.parameters.astype(np.float64))
+        wall_s = time.perf_counter() - began
+        if not (math.isfinite(train_loss) and math.isfinite(validation_loss)):
+            reason = f"the loss is not finite after epoch {progress.epoch + 1}"
+        progress.add(wall_s, train_loss, validation_loss, optimiser.parameters)
+        if report is not None:
+            report(progress.epoch, train_loss, validation_loss, wall_s)
+        if not reason and time.perf_counter() - saved > CHECKPOINT_EVERY_S:
+            write_checkpoint(folder, belongs_to, progress=progress.state(), optimiser=optimiser.state())
+            saved = time.perf_counter()
+    if not reason and progress.best_epoch == 0:
+        reason = f"none of {progress.epoch} epochs validated better than the weights it began with"
+    remove_checkpoint(folder)
+    return progress, reason
+
+
+def _at_end(limits: Limits, progress: Progress, optimiser: Optimiser) -> bool:
+    stalled = limits.patience is not None and progress.stalled_for >= limits.patience
+    late = limits.time_limit_s is not None and progress.wall_s >= limits.time_limit_s
+    return bool(progress.epoch >= limits.epochs or stalled or late or optimiser.finished)
