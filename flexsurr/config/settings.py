@@ -102,7 +102,7 @@ def _load_study(root: Path, name: str, sources: Sequence[Source]) -> ResolvedStu
         raise ConfigurationError(
             [f"{_holder(sources, ('studies',))}: studies: {name!r} is unknown; allowed: {_study_names(root)}"]
         )
-    study_sources = [Source(file, read_yaml(root / file, file))]
+    study_sources = _study_files(root, file)
     for source in sources:
         values = source.values.get("overrides")
         if isinstance(values, Mapping) and isinstance(values.get(name), Mapping):
@@ -153,6 +153,25 @@ def _load_study(root: Path, name: str, sources: Sequence[Source]) -> ResolvedStu
             holder = _holder(study_sources, ("evaluation", "distributed"))
             raise ConfigurationError([f"{holder}: evaluation.distributed: {error}"]) from None
     return ResolvedStudy(name, study, structure, sweeps, tuple(others))
+
+
+def _study_files(root: Path, file: str) -> list[Source]:
+    """The file of a study, on top of the one of the study that it is `based_on`, if any."""
+    values = dict(read_yaml(root / file, file))
+    base = values.pop("based_on", None)
+    if base is None:
+        return [Source(file, values)]
+    below = f"{STUDIES}/{base}.yaml"
+    if not (root / below).is_file() or below == file:
+        raise ConfigurationError(
+            [f"{file}: based_on: {base!r} is no other study; allowed: {_study_names(root)}"]
+        )
+    under = read_yaml(root / below, below)
+    if "based_on" in under:
+        raise ConfigurationError(
+            [f"{file}: based_on: {base!r} is based on another itself; allowed: a study that is not"]
+        )
+    return [Source(below, under), Source(file, values)]
 
 
 def _holder(sources: Sequence[Source], key: Sequence[str]) -> str:

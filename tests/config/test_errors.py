@@ -149,6 +149,25 @@ def test_a_value_from_a_preset_is_blamed_on_the_preset(root):
     assert message.startswith(f"{preset}: overrides.cantilever.dataset.step_s: -1 is not allowed")
 
 
+@pytest.mark.parametrize(
+    ("base", "words"),
+    [("wnig", ["'wnig' is no other study", "allowed: cantilever, wing"]), ("wing_unit", ["no other study"])],
+)
+def test_what_a_study_cannot_be_based_on_is_named(root, base, words):
+    spoil(root, CONFIG, "studies", ["wing_unit"])
+    spoil(root, "config/studies/wing_unit.yaml", "based_on", base)
+    message = refusal(root)
+    assert message.startswith("config/studies/wing_unit.yaml: based_on: ")
+    for word in words:
+        assert word in message
+
+
+def test_a_value_of_the_base_is_blamed_on_the_base(root):
+    spoil(root, CONFIG, "studies", ["wing_unit"])
+    spoil(root, "config/studies/wing.yaml", "dataset.step_s", -1)
+    assert refusal(root).startswith("config/studies/wing.yaml: dataset.step_s: -1 is not allowed")
+
+
 def test_a_value_from_the_command_line_is_blamed_on_it(root):
     effective = yaml.safe_load((root / CONFIG).read_text()) | {"resutls": "x"}
     with pytest.raises(ConfigurationError, match="--config: resutls: unknown key"):

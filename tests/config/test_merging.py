@@ -1,4 +1,5 @@
 import re
+import shutil
 from pathlib import Path
 
 import pytest
@@ -59,6 +60,17 @@ def test_the_blame_goes_to_the_last_file_that_holds_the_value():
 def test_every_preset_is_sound(preset):
     configuration = load(REPOSITORY, ["config/config.yaml", f"config/presets/{preset}"])
     assert [study.name for study in configuration.studies] == ["cantilever", "wing"]
+
+
+def test_a_study_has_its_own_values_and_otherwise_those_of_the_study_it_is_based_on(tmp_path):
+    shutil.copytree(REPOSITORY / "config", tmp_path / "config")
+    (tmp_path / "mine.yaml").write_text("studies: [wing, wing_unit]\n")
+    base, study = (one.study for one in load(tmp_path, ["config/config.yaml", "mine.yaml"]).studies)
+    assert (base.reduction.normalisation, study.reduction.normalisation) == ("mass", "unit")
+    assert study.reduction.modes == base.reduction.modes
+    assert (study.datasets, study.sweeps, study.trains_on) == (base.datasets, base.sweeps, base.trains_on)
+    assert study.evaluation.integrators == base.evaluation.integrators
+    assert (base.evaluation.simulations, study.evaluation.simulations) == (10, 2)
 
 
 def test_a_part_has_the_values_it_was_made_of():
