@@ -10,14 +10,17 @@ import tempfile
 import numpy as np
 from numba import njit
 from timing import compare
-from wing import ACCURATE, FRESH, STRUCTURE, basis, datasets, starts, wing_model
+from wing import ACCURATE, FRESH, basis, datasets, starts, wing_model
 
-from flexsurr.beam import SineTipForce, element_frames, loaded, tip_position
-from flexsurr.config.study import Integrator
+from flexsurr.beam import loaded
+from flexsurr.config.study import DistributedLoad, EvaluationSettings, Integrator, LearnedLoadSettings
 from flexsurr.config.sweep import Trial
+from flexsurr.evaluation import learn_forces
+from flexsurr.evaluation.cases import excitation
+from flexsurr.evaluation.learned_loads import exact_forces, relative_error
 from flexsurr.simulation import rhs, simulate
 from flexsurr.surrogates import LearnedLoad, compiled
-from flexsurr.training import fit, fit_network_map, fit_polynomial_map
+from flexsurr.training import fit
 
 RESPONSES, REPEATS, CALLS = 10, 15, 5000
 TIMES = np.linspace(0.0, 30.0, 3001)
@@ -29,7 +32,6 @@ TRIALS = {
     )
     for degree in (4, 6, 8)
 } | {"network, 32 atan": Trial(architecture="port_hamiltonian", hidden=(32,), activation="atan", epochs=100)}
-NAMES = ("x", "y", "z", "cosine", "sine")
 
 
 @njit(error_model="numpy")
@@ -96,41 +98,29 @@ def surrogates(found) -> dict:
     return models
 
 
-def outputs(eta):
-    """Tip's position and the cosine and sine of its twist."""
-    q = eta @ basis().modes.T
-    frames = element_frames(STRUCTURE, q)[:, -1]
-    return np.column_stack([tip_position(STRUCTURE, q), frames[:, 1, 1], frames[:, 2, 1]])
-
-
 def learned_loads(dataset, model) -> None:
-    load = SineTipForce(10.0, 50.0, start_s=0.0)
+    """The study's distributed load, learned: errors on held-out samples, and what it adds to a call."""
+    settings = EvaluationSettings(
+        distributed=DistributedLoad(force_N_m=10.0, couple_N_m_m=20.0, frequency_rad_s=2.0, shape="elliptic")
+    )
     eta, held_out = dataset.x_train[:, :3], dataset.x_validation[::7, :3]
-    force = np.array([0.0, 0.0, 10.0, 0.0, 0.0])
-    h = 1e-5
-    jacobian = np.stack(
-        [(outputs(held_out + h * e) - outputs(held_out - h * e)) / (2 * h) for e in np.eye(3)], axis=-1
-    )
-    expected, exact = outputs(held_out), np.einsum("smk,m->sk", jacobian, force)
-    maps = {f"polynomial, degree {d}": fit_polynomial_map(eta, outputs(eta), NAMES, d) for d in (4, 6, 8)}
-    maps |= {f"network, {n}": fit_network_map(eta, outputs(eta), NAMES, n, "atan", 100) for n in (16, 32)}
+    load = excitation(settings, end_s=1.0)
     models = {"none": model, "exact": loaded(model, basis(), load, "compiled")}
-    models |= {name: LearnedLoad(model, learned, force, load.history) for name, learned in maps.items()}
+    errors = {}
+    for degree, hidden in ((4, 8), (6, 16), (8, 32)):
+        learned_load = LearnedLoadSettings(degree=degree, hidden=hidden)
+        chosen = settings.model_copy(update={"learned_load": learned_load})
+        learned = learn_forces(basis(), chosen, eta, held_out)
+        exact = exact_forces(basis(), learned.load, held_out)
+        for fitted in (learned.polynomial, learned.network):
+            errors[fitted.form] = relative_error(fitted(held_out), exact)
+            models[fitted.form] = LearnedLoad(model, fitted, load.history)
     calls = nanoseconds(models, dataset.x_train[5])
-    print(
-        "\nlearned load at the tip   position rms / L   force, relative   twist, largest rad   ns more a call"
-    )
-    print(f"{'exact':<26} {'':>54} {calls['exact'] - calls['none']:>15.0f}")
-    for name, learned in maps.items():
-        off = np.sum((learned(held_out) - expected)[:, :3] ** 2, axis=1)
-        forces = np.linalg.norm(learned.generalised_force(held_out, force) - exact) / np.linalg.norm(exact)
-        turn = learned.angle(held_out, "sine", "cosine") - np.arctan2(expected[:, 4], expected[:, 3])
-        twist = np.max(np.abs(np.angle(np.exp(1j * turn))))
-        print(
-            f"{name:<26} {np.sqrt(np.mean(off)) / STRUCTURE.length_m:>15.1e} {forces:>17.1e}"
-            f" {twist:>20.1e} {calls[name] - calls['none']:>15.0f}",
-            flush=True,
-        )
+    print("\nlearned load along the span   force, relative   ns more a call")
+    for name in models:
+        if name != "none":
+            error = f"{errors[name]:.1e}" if name in errors else ""
+            print(f"{name:<28} {error:>16} {calls[name] - calls['none']:>16.0f}", flush=True)
 
 
 def main() -> None:

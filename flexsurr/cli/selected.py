@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from flexsurr.surrogates import load
+from flexsurr.training.selection import ERROR
 
 
 def selected_surrogates(selection: Path, variant: str, runs: Path) -> dict[str, Any]:
@@ -15,3 +16,10 @@ def selected_surrogates(selection: Path, variant: str, runs: Path) -> dict[str, 
         for name, entry in chosen.items()
         if isinstance(entry, dict)
     }
+
+
+def most_accurate(selection: Path, variant: str) -> str | None:
+    """The name of the surrogate of `variant` whose long responses err least; None if none was selected."""
+    chosen = json.loads(selection.read_text(encoding="utf-8")).get(variant, {})
+    errors = {name: entry[ERROR] for name, entry in chosen.items() if isinstance(entry, dict)}
+    return min(errors, key=lambda name: errors[name], default=None)

@@ -5,13 +5,13 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, field_validator, model_validator
 
+from flexsurr.config.activation import Activation
 from flexsurr.config.merging import Source, build
 from flexsurr.config.panels import PanelCounts
 from flexsurr.config.reading import read_yaml
 from flexsurr.config.schema import Record
 from flexsurr.config.structure import Positive
 from flexsurr.config.study import Count
-from flexsurr.config.sweep import Activation
 
 Sampling = Literal["pseudo_random", "sobol"]
 CoefficientModel = Literal["network", "linear", "quadratic"]

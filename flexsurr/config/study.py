@@ -4,6 +4,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
+from flexsurr.config.activation import Activation
 from flexsurr.config.schema import Record
 from flexsurr.config.structure import NotNegative, Positive
 
@@ -123,6 +124,21 @@ class DistributedLoad(Record):
     longest_s: Positive = 5.0
 
 
+class LearnedLoadSettings(Record):
+    """The forced response's load, learned from the configurations of one `dataset` of the study.
+
+    Polynomials of `kinematics_degree` give positions and directions; the generalised forces that follow
+    are fitted by a polynomial of `degree`, and by a network of `hidden` neurons in at most `epochs`.
+    """
+
+    dataset: str = DEFAULT
+    kinematics_degree: Count = 10
+    degree: Count = 6
+    hidden: Count = 16
+    activation: Activation = "half_log"
+    epochs: Count = 200
+
+
 class DescribedSimulations(Record):
     """How many simulations the described reduced model is timed on: it takes half a minute for each."""
 
@@ -138,7 +154,8 @@ class DescribedSimulations(Record):
 class EvaluationSettings(Record):
     """Responses by which models are timed and judged.
 
-    `distributed`, where there is one, takes the place of `force` in all forced responses. Integrators:
+    `distributed`, where there is one, takes the place of `force` in all forced responses, and `learned_load`
+    says how its generalised forces are learned. Integrators:
     `integrators` are timed, beside SciPy's Radau; `reference_integrator` gives what errors are measured from,
     `judging_integrator` the responses by which runs are chosen, `drawing_integrator` those of the figures,
     `energy_integrator` those whose energy is drawn, and `validation_integrator` full and reduced order.
@@ -154,6 +171,7 @@ class EvaluationSettings(Record):
     validation_duration_s: Positive = 1.0
     force: TipForce = TipForce()
     distributed: DistributedLoad | None = None
+    learned_load: LearnedLoadSettings = LearnedLoadSettings()
     reference_integrator: Integrator = Integrator(method="dop853", rtol=1e-12, atol=1e-14)
     judging_integrator: Integrator = Integrator(method="dop853_fixed", step_s=0.01)
     drawing_integrator: Integrator = Integrator(method="dop853", rtol=1e-10, atol=1e-12)
@@ -237,6 +255,12 @@ class Study(Record):
                 raise ValueError(
                     f"trains_on.{sweep}: {name!r} is not allowed; allowed: {', '.join(self.datasets)}"
                 )
+        name = self.evaluation.learned_load.dataset
+        if name not in self.datasets:
+            raise ValueError(
+                f"evaluation.learned_load.dataset: {name!r} is not allowed; "
+                f"allowed: {', '.join(self.datasets)}"
+            )
         return self
 
     @property

@@ -10,11 +10,11 @@ from pydantic import (
     model_validator,
 )
 
+from flexsurr.config.activation import Activation
 from flexsurr.config.schema import Record
 from flexsurr.config.structure import Positive
 from flexsurr.config.study import Count
 
-Activation = Literal["elu", "tanh", "softplus", "silu", "squareplus", "half_log", "atan"]
 Architecture = Literal["mlp", "hnn", "dissipative_hnn", "port_hamiltonian", "polynomial"]
 ScalingKind = Literal["canonical", "per_feature"]
 Optimiser = Literal["adam", "adam_cosine", "lbfgs", "levenberg_marquardt", "least_squares"]

@@ -8,7 +8,7 @@ from flexsurr.beam import Implementation, ModalBasis, reduced_order
 from flexsurr.config.study import Variant
 from flexsurr.evaluation.cases import Case, under
 from flexsurr.simulation.rhs import Array, Model
-from flexsurr.surrogates import Network, compiled
+from flexsurr.surrogates import LearnedLoad, LearnedMap, Network, compiled
 
 Form = Literal["described", "numpy", "compiled", "torch"]
 """How a model is computed: as the reference models are, or by torch's autograd."""
@@ -18,16 +18,21 @@ Form = Literal["described", "numpy", "compiled", "torch"]
 class Contender:
     """A model in one implementation, under the name that tables and figures show.
 
-    `own_energy` is the model's own Hamiltonian (k, 2r) -> (k,) [J], or None where it has none.
+    `own_energy` is the model's own Hamiltonian (k, 2r) -> (k,) [J], or None where it has none. With a
+    `learned_load` (η -> Q) a load of a case acts through that instead of the kinematics; its shape must be
+    the one that was learned.
     """
 
     model: str
     implementation: Form
     field: Model
     own_energy: Any = None
+    learned_load: LearnedMap | None = None
 
     def under(self, basis: ModalBasis, case: Case) -> Model:
         """The field with the load of the case; beside torch, which has no load, the load in NumPy."""
+        if self.learned_load is not None and case.load is not None:
+            return LearnedLoad(self.field, self.learned_load, case.load.history)
         implementation = "numpy" if self.implementation == "torch" else self.implementation
         return under(self.field, basis, case, implementation)
 
@@ -57,3 +62,15 @@ def contenders(
 
             found.append(Contender(name, "torch", torch_model(surrogate), own_energy))
     return found
+
+
+def with_learned_loads(name: str, surrogate: Any, loads: Mapping[str, LearnedMap]) -> list[Contender]:
+    """One surrogate, compiled, under each learned load instead of the exact one: no kinematics at all.
+
+    `loads` maps what is added to the surrogate's `name` to generalised forces.
+    """
+    field, own_energy = compiled(surrogate), getattr(surrogate, "energy", None)
+    return [
+        Contender(f"{name}_{added}", "compiled", field, own_energy, learned)
+        for added, learned in loads.items()
+    ]

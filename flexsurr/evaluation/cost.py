@@ -58,12 +58,14 @@ def cost_table(
     variant: Variant,
     response: Response,
     surrogates: Mapping[str, Any],
+    learned: Iterable[Contender] = (),
 ) -> pd.DataFrame:
     """The rows of cost.csv for one variant and response: `measurements`, summarised by `ratios.summary`.
 
-    `surrogates` maps architectures to fitted surrogates. Run it alone on the machine.
+    `surrogates` maps architectures to fitted surrogates; `learned` are those under learned loads
+    (`contenders.with_learned_loads`). Run it alone on the machine.
     """
-    frame = summary(measurements(study, basis, variant, response, surrogates))
+    frame = summary(measurements(study, basis, variant, response, surrogates, learned))
     frame.insert(0, "study", study_name)
     frame.insert(1, "variant", variant)
     frame.insert(2, "response", response)
@@ -86,6 +88,7 @@ def measurements(
     variant: Variant,
     response: Response,
     surrogates: Mapping[str, Any],
+    learned: Iterable[Contender] = (),
 ) -> pd.DataFrame:
     """One row per simulation of every model × implementation × integrator.
 
@@ -99,7 +102,7 @@ def measurements(
     t = sample_times(settings.duration_s, settings.output_step_s)
     cases = evaluation_cases(basis, study, response)
     references = list(reference_solutions(basis, variant, cases, t, settings.reference_integrator))
-    models = contenders(basis, variant, surrogates, with_torch=True)
+    models = [*contenders(basis, variant, surrogates, with_torch=True), *learned]
     rows = []
     with one_thread():
         for setup in setups(models, settings.integrators):

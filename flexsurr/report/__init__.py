@@ -96,6 +96,7 @@ TABLES: dict[str, Product[pd.DataFrame]] = {
     "architectures": Product("Every architecture in every setting", architectures, ("metrics",)),
     "seeds": Product("Mean and spread over seeds", seeds, ("metrics",)),
     "cost": Product("Cost and accuracy", tables.cost, ("cost-*-*",)),
+    "learned_loads": Product("Learned loads", tables.learned_loads, ("learned_loads-*",)),
 }
 
 __all__ = ["FIGURES", "TABLES", "Product", "damped", "save", "save_page", "save_table"]

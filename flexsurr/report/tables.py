@@ -25,6 +25,18 @@ TRAINING_COLUMNS = (
 )
 
 
+LEARNED_LOAD_COLUMNS = (
+    "study",
+    "variant",
+    "map",
+    "form",
+    "parameters",
+    "tip_rms_over_length",
+    "twist_largest_error_rad",
+    "force_relative_error",
+)
+
+
 def static_tip(statics: pd.DataFrame) -> pd.DataFrame:
     """static_tip.csv: tip position [m] against dead tip load [N], ascending."""
     return _columns(statics, STATIC_COLUMNS).sort_values("load_N", ignore_index=True)
@@ -44,6 +56,11 @@ def training(metrics: pd.DataFrame) -> pd.DataFrame:
 def cost(costs: pd.DataFrame) -> pd.DataFrame:
     """cost.csv: every model × implementation × integrator, by study, variant and response."""
     return _columns(costs, COST_COLUMNS)
+
+
+def learned_loads(errors: pd.DataFrame) -> pd.DataFrame:
+    """learned_loads.csv: what the maps of a learned load err by."""
+    return _columns(errors, LEARNED_LOAD_COLUMNS)
 
 
 def save_table(frame: pd.DataFrame, path: Path) -> None:

@@ -1,7 +1,6 @@
 """Any compiled model under a load whose generalised forces are learned: no kinematics are computed.
 
-A load of fixed shape follows one history, F(t) = s(t) f. With r̂(η) the learned positions, Q = s ∂(r̂ · f)/∂η
-is the gradient of one scalar potential, which the map is contracted to before it is compiled.
+A load of fixed shape follows one history, F(t) = s(t) f, and so do its generalised forces, s(t) Q̂(η).
 """
 
 import math
@@ -13,7 +12,7 @@ import numpy as np
 
 from flexsurr.simulation.rhs import Array, evaluate, implements_rhs, rhs
 from flexsurr.surrogates.learned_map import LearnedMap
-from flexsurr.surrogates.potentials import add_gradient
+from flexsurr.surrogates.map_kernels import add_outputs
 
 
 class History(Protocol):
@@ -41,10 +40,10 @@ class History(Protocol):
 
 
 class LearnedLoadKernel(NamedTuple):
-    """A model's kernel, a potential's, and the history's numbers."""
+    """A model's kernel, that of the forces, and the history's numbers."""
 
     model: Any
-    potential: Any
+    forces: Any
     start: float
     end: float
     frequency: float
@@ -55,31 +54,26 @@ class LearnedLoadKernel(NamedTuple):
 def _learned_load(kernel, t, x, dx, work):
     rhs(kernel.model, t, x, dx, work)
     if kernel.start <= t < kernel.end:
-        add_gradient(kernel.potential, math.sin(kernel.frequency * t + kernel.phase), x, dx, work)
+        add_outputs(kernel.forces, math.sin(kernel.frequency * t + kernel.phase), x, dx, work)
 
 
 @dataclass(frozen=True, eq=False)
 class LearnedLoad:
-    """A CompiledModel: `model`, whose states are (η, p), under a load on the learned positions.
+    """A CompiledModel: `model`, whose states are (η, p), under a load of learned generalised forces.
 
-    `force` (m,) is what acts on each output of `positions` at a factor of 1: [N] on positions [m], zero on
-    other outputs. Raises ValueError where their numbers don't fit.
+    `forces` maps η (r,) to Q̂ (r,) at a factor of 1. Raises ValueError where their numbers don't fit.
     """
 
     model: Any  # a CompiledModel; what more it has, as an energy, is passed on
-    positions: LearnedMap
-    force: Array
+    forces: LearnedMap
     history: History
 
     def __post_init__(self) -> None:
-        if self.force.shape != (len(self.positions.output_names),):
+        r = len(self.model.state_names) // 2
+        if (self.forces.scales.size, len(self.forces.output_names)) != (r, r):
             raise ValueError(
-                f"{len(self.positions.output_names)} outputs take as many forces, not {self.force.shape}"
-            )
-        if 2 * self.positions.scales.size != len(self.model.state_names):
-            raise ValueError(
-                f"a map of {self.positions.scales.size} coordinates does not fit the states"
-                f" {', '.join(self.model.state_names)}"
+                f"a map of {self.forces.scales.size} coordinates to {len(self.forces.output_names)} forces"
+                f" does not fit the states {', '.join(self.model.state_names)}"
             )
 
     @property
@@ -105,14 +99,14 @@ class LearnedLoad:
 
     @cached_property
     def _compiled(self) -> tuple[NamedTuple, int]:
-        potential, size = self.positions.contracted(self.force).potential()
+        forces, size = self.forces.kernel()
         history = self.history
         times = history.start_s, history.end_s, history.frequency_rad_s, history.phase_rad
-        return LearnedLoadKernel(self.model.kernel, potential, *map(float, times)), size
+        return LearnedLoadKernel(self.model.kernel, forces, *map(float, times)), size
 
     @property
     def kernel(self) -> NamedTuple:
-        """The model's kernel and the potential's in one."""
+        """The model's kernel and that of the forces in one."""
         return self._compiled[0]
 
     @property

@@ -1,7 +1,7 @@
-"""Learned kinematics: coordinates η to positions and to the sine and cosine of a twist.
+"""Learned maps of the coordinates η: to positions and directions, or to generalised forces.
 
-The Jacobian of the map gives generalised forces, Q = (∂r̂/∂η)ᵀ F, which do the work of F along the learned
-positions exactly; the same map gives the outputs. Angles are learned as sine and cosine, for they jump
+The Jacobian of learned positions gives generalised forces, Q = (∂r̂/∂η)ᵀ F, which do the work of F along
+them exactly; the same map gives the outputs. Angles are learned as sine and cosine, for they jump
 themselves where they pass ±π.
 """
 
@@ -9,15 +9,15 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, ClassVar, NamedTuple, Self
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from flexsurr.simulation.rhs import Array
 from flexsurr.surrogates.activations import ACTIVATIONS
 from flexsurr.surrogates.archive import read_archive, write_archive
+from flexsurr.surrogates.map_kernels import NetworkMapKernel, PolynomialMapKernel
 from flexsurr.surrogates.monomials import Exponents, differentiate, evaluate_monomials, factors
-from flexsurr.surrogates.potentials import NetworkPotential, PolynomialPotential
 
 FORMAT = "flexsurr learned map 1"
 
@@ -39,24 +39,27 @@ class LearnedMap(ABC):
     def jacobian(self, eta: Array) -> Array:
         """∂(outputs)/∂η, (..., r) -> (..., m, r)."""
 
+    @property
     @abstractmethod
-    def contracted(self, weights: Array) -> Self:
-        """The map to the one number Σ weights_i outputs_i; `weights` (m,).
+    def form(self) -> str:
+        """What it is made of, in two words."""
 
-        For forces of a fixed shape F on the mapped positions this is the potential whose gradient is Q.
-        """
+    @property
+    @abstractmethod
+    def parameter_count(self) -> int:
+        """Numbers that were fitted."""
 
     @abstractmethod
-    def potential(self) -> tuple[NamedTuple, int]:
-        """Compiled form of a map to one number, and the size of its workspace; ValueError for another."""
+    def kernel(self) -> tuple[NamedTuple, int]:
+        """Compiled form (`map_kernels`) and the size of its workspace."""
 
     @abstractmethod
     def arrays(self) -> dict[str, np.ndarray]:
         """What makes this map, by the names of its attributes."""
 
     def generalised_force(self, eta: Array, force: Array) -> Array:
-        """Q = (∂r̂/∂η)ᵀ F, (..., r), for forces (m,) on the outputs; zero for those that are no positions."""
-        weighted: Array = np.einsum("...mk,m->...k", self.jacobian(eta), force)
+        """Q = (∂r̂/∂η)ᵀ F, (..., r), for forces (m,) or (..., m) on the outputs."""
+        weighted: Array = np.einsum("...mk,...m->...k", self.jacobian(eta), force)
         return weighted
 
     def angle(self, eta: Array, sine: str, cosine: str) -> Array:
@@ -71,10 +74,6 @@ class LearnedMap(ABC):
             raise ValueError(f"{count} outputs do not fit the names {self.output_names}")
         if self.scales.ndim != 1 or not np.all(self.scales > 0.0):
             raise ValueError(f"the scales of the coordinates must be positive, not {self.scales}")
-
-    def _check_potential(self) -> None:
-        if len(self.output_names) != 1:
-            raise ValueError("only a map to one number is a potential: contract it with forces first")
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,23 +105,28 @@ class PolynomialMap(LearnedMap):
         lowered, coefficients = self._derivative
         return np.einsum("...l,lmk->...mk", evaluate_monomials(lowered, eta / self.scales), coefficients)
 
-    def contracted(self, weights: Array) -> "PolynomialMap":
-        """The map to Σ weights_i outputs_i; `weights` (m,)."""
-        combined = (self.coefficients @ weights)[:, None]
-        return PolynomialMap(self.scales, ("potential",), self.exponents, combined)
+    @property
+    def form(self) -> str:
+        """Its degree."""
+        powers = self.exponents.sum(axis=1)
+        return f"degree {powers.max()}{'' if np.any(powers % 2) else ', even'}"
 
-    def potential(self) -> tuple[NamedTuple, int]:
-        """Monomials as products, and their adjoints."""
-        self._check_potential()
+    @property
+    def parameter_count(self) -> int:
+        """Coefficients of all outputs."""
+        return self.coefficients.size
+
+    def kernel(self) -> tuple[NamedTuple, int]:
+        """Monomials as products, then a sum for each output."""
         parents, of_factors = factors(self.exponents)
-        kernel = PolynomialPotential(
+        kernel = PolynomialMapKernel(
             1.0 / self.scales,
             parents.astype(np.uint64),
             of_factors.astype(np.uint64),
-            self.coefficients[:, 0].copy(),
+            np.ascontiguousarray(self.coefficients.T).ravel(),
         )
         r = self.scales.size
-        return kernel, r * (r + 3) + 2 * len(self.exponents)
+        return kernel, r * (r + 3) // 2 + len(self.exponents)
 
     def arrays(self) -> dict[str, np.ndarray]:
         """What makes this map."""
@@ -165,24 +169,26 @@ class NetworkMap(LearnedMap):
         weights = self.weights / self.scales[:, None]
         return np.einsum("kn,...n,nm->...mk", weights, slopes, self.readout, optimize=True)
 
-    def contracted(self, weights: Array) -> "NetworkMap":
-        """The map to Σ weights_i outputs_i; `weights` (m,)."""
-        return NetworkMap(
-            self.scales,
-            ("potential",),
-            self.activation,
-            self.weights,
-            self.biases,
-            (self.readout @ weights)[:, None],
-            np.array([self.constant @ weights]),
-        )
+    @property
+    def form(self) -> str:
+        """Its neurons and their activation."""
+        return f"{self.biases.size} {self.activation}"
 
-    def potential(self) -> tuple[NamedTuple, int]:
-        """A single loop over neurons for each coordinate."""
-        self._check_potential()
+    @property
+    def parameter_count(self) -> int:
+        """Weights and biases of both layers."""
+        return self.weights.size + self.biases.size + self.readout.size + self.constant.size
+
+    def kernel(self) -> tuple[NamedTuple, int]:
+        """A single loop over neurons for each coordinate and each output."""
         layer = np.concatenate([(self.weights / self.scales[:, None]).ravel(), self.biases])
-        tag = ACTIVATIONS[self.activation].tag
-        return NetworkPotential(tag, layer, self.readout[:, 0].copy()), self.scales.size + self.biases.size
+        kernel = NetworkMapKernel(
+            ACTIVATIONS[self.activation].tag,
+            layer,
+            np.ascontiguousarray(self.readout.T).ravel(),
+            np.array(self.constant),
+        )
+        return kernel, self.scales.size + self.biases.size
 
     def arrays(self) -> dict[str, np.ndarray]:
         """What makes this map."""

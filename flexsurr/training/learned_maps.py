@@ -1,4 +1,4 @@
-"""Learned kinematics from samples of coordinates and outputs."""
+"""Learned maps from samples of coordinates and outputs."""
 
 import numpy as np
 
@@ -13,15 +13,18 @@ BLOCK = 4096  # samples at a time
 
 
 def fit_polynomial_map(
-    eta: Array, outputs: Array, output_names: tuple[str, ...], degree: int
+    eta: Array, outputs: Array, output_names: tuple[str, ...], degree: int, even: bool = False
 ) -> PolynomialMap:
     """Polynomial of total degree ≤ `degree` by least squares; `eta` (samples, r), `outputs` (samples, m).
 
-    Raises ValueError where a coordinate is zero throughout.
+    `even`: of even powers alone, which is what forces on a symmetric structure have. Raises ValueError where
+    a coordinate is zero throughout.
     """
     scales = _reach(eta)
     r = scales.size
     exponents = np.concatenate([np.zeros((1, r), dtype=np.int64), monomials_to_degree(r, degree)])
+    if even:
+        exponents = exponents[exponents.sum(axis=1) % 2 == 0]
     triangle = Triangle(len(exponents), outputs.shape[1])
     for first in range(0, len(eta), BLOCK):
         part = slice(first, first + BLOCK)

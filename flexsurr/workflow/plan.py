@@ -66,6 +66,12 @@ EVALUATION = (
     "evaluation.reference_integrator",
 )
 RESPONSES = (*EVALUATION, "evaluation.drawing_integrator", "evaluation.energy_integrator")
+LEARNED_LOAD = (
+    "reduction",
+    "evaluation.force",
+    "evaluation.distributed",
+    "evaluation.learned_load",
+)
 COST = (
     *EVALUATION,
     "evaluation.described_simulations",
@@ -205,6 +211,14 @@ class Plan:
         """Wall times and errors of everything, under one response."""
         return {**self._part(study, COST), "study": study, "variant": variant, "response": response}
 
+    def learn_load(self, study: str, variant: str) -> Job:
+        """The study's load, learned from configurations of one variant."""
+        return {**self._part(study, LEARNED_LOAD), "study": study, "variant": variant}
+
+    def load_data(self, study: str, variant: str) -> str:
+        """The folder of the dataset that the load is learned from, below that of the study's datasets."""
+        return data_folder(variant, self.studies[study].study.evaluation.learned_load.dataset)
+
     def files(self, study: str, read: str) -> list[str]:
         """The files below the results that hold what a figure or table `read`s (flexsurr.report)."""
         runs = {"metrics": "metrics.json", "history": "history.parquet"}
@@ -219,7 +233,7 @@ class Plan:
         variants = self.variants(study)
         names = ["statics", "frequencies", "validation"]
         names += [f"response-{variant}-{response}" for variant in variants for response in RESPONSE_KINDS]
-        names += [f"energy-{variant}" for variant in variants]
+        names += [f"{kind}-{variant}" for kind in ("energy", "learned_loads") for variant in variants]
         names += [f"cost-{variant}-{response}" for variant in variants for response in RESPONSE_KINDS]
         found = [f"evaluation/{study}/{name}.parquet" for name in names if fnmatch(name, read)]
         if not found:

@@ -22,6 +22,8 @@ CONTRACT = {
     "wall_s_std, relative_to_described_percent, relative_to_described_std_percent, "
     "relative_to_numpy_percent, relative_to_compiled_percent, paper_percent, paper_std_percent, "
     "tip_error_percent, energy_drift_percent, diverged",
+    "learned_loads": "study, variant, map, form, parameters, tip_rms_over_length, twist_largest_error_rad, "
+    "force_relative_error",
 }
 
 
@@ -38,7 +40,20 @@ def frames(statics, metrics, cost, relatives):
             "exact_rad_s": [None, None],
         }
     )
+    learned_loads = pd.DataFrame(
+        {
+            "study": ["wing"] * 2,
+            "variant": ["hamiltonian"] * 2,
+            "map": ["kinematics", "network"],
+            "form": ["degree 8", "16 half_log"],
+            "parameters": [4000, 115],
+            "tip_rms_over_length": [1e-7, None],
+            "twist_largest_error_rad": [1e-5, None],
+            "force_relative_error": [1e-5, 1e-4],
+        }
+    )
     return {
+        "learned_loads": learned_loads,
         "static_tip": statics,
         "natural_frequencies": frequencies,
         "training": metrics,

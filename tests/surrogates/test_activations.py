@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numba import njit
 
-from flexsurr.config.sweep import Activation
+from flexsurr.config.activation import Activation
 from flexsurr.surrogates.activations import ACTIVATIONS, curvature, slope, value
 from flexsurr.surrogates.elementary import exponential, logarithm
 

@@ -67,24 +67,23 @@ def test_forces_do_the_work_of_the_learned_displacements(kind, seed):
     assert work == pytest.approx(force @ (learned(end) - learned(start)), abs=1e-6)
 
 
-@EACH
-@given(seed=SEEDS)
-def test_contracted_it_is_the_potential_of_the_force(kind, seed):
-    learned = MAPS[kind](seed)
-    generator = np.random.default_rng(seed)
-    eta, force = generator.uniform(-1.0, 1.0, (4, 3)) * SCALES, generator.normal(size=5)
-    potential = learned.contracted(force)
-    np.testing.assert_allclose(potential(eta)[:, 0], learned(eta) @ force, atol=1e-10)
-    np.testing.assert_allclose(
-        potential.jacobian(eta)[:, 0], learned.generalised_force(eta, force), atol=1e-9
-    )
+def forces(kind, seed=0):
+    """A map of three coordinates to three forces."""
+    names = ("Q1", "Q2", "Q3")
+    if kind == "network":
+        generator = np.random.default_rng(seed)
+        shapes = (3, 6), (6,), (6, 3), (3,)
+        return NetworkMap(SCALES, names, "atan", *(generator.normal(size=shape) for shape in shapes))
+    whole = polynomial(seed)
+    kept = whole.exponents.sum(axis=1) % 2 == 0 if kind == "even polynomial" else slice(None)
+    return PolynomialMap(SCALES, names, whole.exponents[kept], whole.coefficients[kept, :3])
 
 
-@EACH
-def test_compiled_it_adds_the_force_while_it_acts(kind):
-    learned, force = MAPS[kind](), np.array([1.0, -2.0, 30.0, 0.0, 0.0])
+@pytest.mark.parametrize("kind", ["polynomial", "even polynomial", "network"])
+def test_compiled_it_adds_the_forces_while_they_act(kind):
+    learned = forces(kind)
     model = compiled(PORT_HAMILTONIANS["even"])
-    loaded = LearnedLoad(model, learned, force, Sine())
+    loaded = LearnedLoad(model, learned, Sine())
     assert loaded.breakpoints == (0.1, 0.7)
     assert (loaded.state_names, loaded.state_units) == (model.state_names, model.state_units)
     x = np.concatenate([0.5 * SCALES, [0.3, -1.0, 2.0]])
@@ -92,20 +91,24 @@ def test_compiled_it_adds_the_force_while_it_acts(kind):
     for t, factor in ((0.0, 0.0), (0.1, np.sin(1.2)), (0.4, np.sin(3.9)), (0.7, 0.0), (2.0, 0.0)):
         added = loaded.derivative(t, x) - model.derivative(t, x)
         np.testing.assert_allclose(added[:3], 0.0)
-        expected = factor * learned.generalised_force(x[:3], force)
-        np.testing.assert_allclose(added[3:], expected, rtol=1e-10, atol=1e-9)
+        np.testing.assert_allclose(added[3:], factor * learned(x[:3]), rtol=1e-10, atol=1e-9)
 
 
 def test_it_works_on_what_it_loads():
-    """The energy that an undamped model gains is ∫ Q · q̇ dt, under a potential of one coordinate."""
-    exponents = np.array([[0], [1], [2], [3]])
-    learned = PolynomialMap(np.array([0.3]), ("z",), exponents, np.array([[0.1], [1.0], [-0.4], [0.3]]))
+    """The energy that an undamped model gains is ∫ Q dη: here of forces with a known potential."""
+    exponents = np.array([[0], [1], [2]])
+    learned = PolynomialMap(np.array([0.3]), ("Q1",), exponents, np.array([[5.0], [-4.0], [4.5]]))
+
+    def potential(eta):
+        s = eta / 0.3
+        return 0.3 * (5.0 * s - 2.0 * s**2 + 1.5 * s**3)
+
     constant = Sine(start_s=-np.inf, end_s=np.inf, frequency_rad_s=0.0, phase_rad=0.5 * np.pi)
-    model = LearnedLoad(compiled(HAMILTONIANS["even"]), learned, np.array([5.0]), constant)
+    model = LearnedLoad(compiled(HAMILTONIANS["even"]), learned, constant)
     assert model.breakpoints == ()
     t = np.linspace(0.0, 0.01, 5)
     x = simulate(model, t, np.array([0.1, 0.5]), Integrator(method="rk4", step_s=5e-5)).x
-    balance = model.energy(x) - 5.0 * learned(x[:, :1])[:, 0]
+    balance = model.energy(x) - potential(x[:, 0])
     np.testing.assert_allclose(balance, balance[0], rtol=1e-8)
     assert abs(model.energy(x[-1]) - model.energy(x[0])) > 1e-3
 
@@ -153,10 +156,7 @@ def test_what_makes_no_map_is_refused(changes, reason):
 
 
 def test_loads_that_do_not_fit_are_refused():
-    model = compiled(network(HNN, 6, (3,), "atan"))
-    with pytest.raises(ValueError, match="5 outputs take as many forces"):
-        LearnedLoad(model, polynomial(), np.zeros(3), Sine())
-    with pytest.raises(ValueError, match="3 coordinates does not fit the states"):
-        LearnedLoad(compiled(HAMILTONIANS["even"]), polynomial(), np.zeros(5), Sine())
-    with pytest.raises(ValueError, match="contract it with forces first"):
-        polynomial().potential()
+    with pytest.raises(ValueError, match="3 coordinates to 5 forces does not fit the states"):
+        LearnedLoad(compiled(network(HNN, 6, (3,), "atan")), polynomial(), Sine())
+    with pytest.raises(ValueError, match="3 coordinates to 3 forces does not fit the states"):
+        LearnedLoad(compiled(HAMILTONIANS["even"]), forces("network"), Sine())

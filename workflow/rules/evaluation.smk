@@ -22,10 +22,37 @@ rule responses:
         " --energy {output.energy:q} > {log:q} 2>&1"
 
 
+rule learn_load:
+    input:
+        lambda w: (
+            f"{RESULTS}/datasets/{w.study}/{plan.load_data(w.study, w.variant)}/manifest.json"
+        ),
+    output:
+        polynomial=f"{RESULTS}/evaluation/{{study}}/{{variant}}/learned_load.npz",
+        network=f"{RESULTS}/evaluation/{{study}}/{{variant}}/network_load.npz",
+        errors=f"{RESULTS}/evaluation/{{study}}/learned_loads-{{variant}}.parquet",
+    log:
+        f"{RESULTS}/logs/learn_load/{{study}}-{{variant}}.log",
+    params:
+        job=job("learn_load", "study", "variant"),
+        code=code("learn_load"),
+    message:
+        "learning the load of {wildcards.study}, {wildcards.variant}"
+    shell:
+        "python -m flexsurr.cli.learn_load --job {params.job:q} --manifest {input:q}"
+        " --polynomial {output.polynomial:q} --network {output.network:q} --errors {output.errors:q}"
+        " > {log:q} 2>&1"
+
+
 rule evaluate:
     # It measures time, so it asks for every core: nothing else runs beside it.
     input:
         selection=f"{RESULTS}/selected/{{study}}.json",
+        loads=lambda w: (
+            [rules.learn_load.output.polynomial, rules.learn_load.output.network]
+            if w.response == "forced"
+            else []
+        ),
     output:
         f"{RESULTS}/evaluation/{{study}}/cost-{{variant}}-{{response}}.parquet",
     log:
@@ -39,4 +66,4 @@ rule evaluate:
         "timing the {wildcards.response} response of {wildcards.study}, {wildcards.variant}"
     shell:
         "python -m flexsurr.cli.evaluate --job {params.job:q} --selection {input.selection:q}"
-        " --runs {params.runs:q} --output {output:q} > {log:q} 2>&1"
+        " --runs {params.runs:q} --loads {input.loads:q} --output {output:q} > {log:q} 2>&1"

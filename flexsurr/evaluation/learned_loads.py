@@ -1,0 +1,163 @@
+"""Loads without kinematics: generalised forces from learned positions and directions.
+
+The study computes generalised forces analytically, from the kinematics of the model that the surrogate
+stands for. Here the points where forces act and the directions of the elements that couples twist are
+learned as functions of η, and virtual work gives
+
+    Q̂ = Σ (∂r̂_i/∂η)ᵀ f_i + Σ τ_i (∂ŷ_i/∂η)ᵀ ẑ_i
+
+with ŷ, ẑ two axes of an element, whose components are the sines and cosines of its twist: ẑ · δŷ is its
+turn about its own x axis. Such couples have no potential. For a load of fixed shape f, τ, the map η → Q̂ is
+then fitted by itself: once as a polynomial, once as a network, both far smaller than the kinematics.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from flexsurr.beam import ModalBasis, chain, tip_position, tip_twist
+from flexsurr.beam.kinematics import configuration, generalised_forces
+from flexsurr.beam.loads import Forces
+from flexsurr.config.structure import Structure
+from flexsurr.config.study import EvaluationSettings, Variant
+from flexsurr.evaluation.cases import excitation
+from flexsurr.simulation.rhs import Array
+from flexsurr.surrogates import LearnedMap, NetworkMap, PolynomialMap
+from flexsurr.training import fit_network_map, fit_polynomial_map
+
+AXES = "xyz"
+AS_GOOD = 2.0  # even powers alone are kept if they err at most so much more
+
+
+@dataclass(frozen=True, eq=False)
+class LearnedKinematics:
+    """The map η → centres (N, 3), tip (3,), y axes (N, 3), z axes (N, 3) of the elements, one after another.
+
+    In the clamp's frame before it is turned; positions in m.
+    """
+
+    structure: Structure
+    outputs: LearnedMap
+
+    def tip(self, eta: Array) -> Array:
+        """(k, 3) position of the tip [m] at η (k, r)."""
+        return self._parts(eta)[1][:, 0]
+
+    def twist(self, eta: Array) -> Array:
+        """(k,) twist of the tip against the clamp [rad] at η (k, r), as `tip_twist` defines it."""
+        *_, y, z = self._parts(eta)
+        up = chain(self.structure).clamp[:, 2]
+        return np.asarray(np.arctan2(y[:, -1] @ up, z[:, -1] @ up))
+
+    def generalised_force(self, eta: Array, load: Forces) -> Array:
+        """Q̂ (k, r) at η (k, r), at a factor of 1."""
+        *_, z = self._parts(eta)
+        forces = np.zeros((len(eta), len(self.outputs.output_names)))
+        centres, tip, y, _ = self._split(forces)
+        centres[:], tip[:] = load.on_centres.ravel(), load.on_tip
+        y[:] = (load.couples[:, None] * z).reshape(y.shape)
+        return self.outputs.generalised_force(eta, forces)
+
+    def _split(self, values: Array) -> list[Array]:
+        """Views of the columns (k, m) of the centres, the tip, the y axes and the z axes."""
+        n = self.structure.elements
+        return np.split(values, [3 * n, 3 * n + 3, 6 * n + 3], axis=1)
+
+    def _parts(self, eta: Array) -> list[Array]:
+        return [part.reshape(len(eta), -1, 3) for part in self._split(self.outputs(eta))]
+
+
+def learn_kinematics(basis: ModalBasis, eta: Array, degree: int) -> LearnedKinematics:
+    """Polynomials of total degree ≤ `degree` for everything, from what is seen at η (k, r)."""
+    structure = basis.structure
+    at = configuration(chain(structure), eta @ basis.modes.T)
+    parts = at.centres, at.nodes[:, -1:], at.frames[..., 1], at.frames[..., 2]
+    seen = np.hstack([part.reshape(len(eta), -1) for part in parts])
+    numbers = range(1, structure.elements + 1)
+    points = [
+        *(f"centre_{i}" for i in numbers),
+        "tip",
+        *(f"y_{i}" for i in numbers),
+        *(f"z_{i}" for i in numbers),
+    ]
+    names = tuple(f"{point}_{axis}" for point in points for axis in AXES)
+    return LearnedKinematics(structure, fit_polynomial_map(eta, seen, names, degree))
+
+
+@dataclass(frozen=True, eq=False)
+class LearnedForces:
+    """The generalised forces Q̂(η) of one load: by way of the kinematics, and fitted by themselves twice."""
+
+    kinematics: LearnedKinematics
+    load: Forces
+    polynomial: PolynomialMap
+    network: NetworkMap
+
+
+def learn_forces(
+    basis: ModalBasis, evaluation: EvaluationSettings, eta: Array, held_out: Array
+) -> LearnedForces:
+    """The forced response's load, learned at `eta` (k, r); even powers alone where `held_out` (l, r) allows.
+
+    Raises ValueError where a coordinate or a generalised force does not vary over the samples.
+    """
+    settings = evaluation.learned_load
+    load = excitation(evaluation, end_s=1.0).forces(basis.structure)
+    kinematics = learn_kinematics(basis, eta, settings.kinematics_degree)
+    forces, expected = (kinematics.generalised_force(at, load) for at in (eta, held_out))
+    names = tuple(f"Q{k + 1}" for k in range(eta.shape[1]))
+    even, whole = (fit_polynomial_map(eta, forces, names, settings.degree, only) for only in (True, False))
+    errors = [relative_error(fitted(held_out), expected) for fitted in (even, whole)]
+    network = fit_network_map(eta, forces, names, settings.hidden, settings.activation, settings.epochs)
+    return LearnedForces(kinematics, load, even if errors[0] <= AS_GOOD * errors[1] else whole, network)
+
+
+def learned_load_table(
+    study_name: str, basis: ModalBasis, variant: Variant, learned: LearnedForces, eta: Array
+) -> pd.DataFrame:
+    """The rows of learned_loads.csv: what each map errs by at held-out η (k, r).
+
+    Of the kinematics, tip_rms_over_length: root mean square of the tip's distance from its place, and
+    twist_largest_error_rad. Of all, force_relative_error: ‖Q̂ − Q‖ / ‖Q‖ over the samples, Q being exact.
+    """
+    structure, kinematics = basis.structure, learned.kinematics
+    q = eta @ basis.modes.T
+    off = np.linalg.norm(kinematics.tip(eta) - tip_position(structure, q), axis=1)
+    turn = kinematics.twist(eta) - tip_twist(structure, q)
+    seen = {
+        "tip_rms_over_length": float(np.sqrt(np.mean(off**2))) / structure.length_m,
+        # the angle jumps at ±π, its error does not
+        "twist_largest_error_rad": float(np.max(np.abs(np.angle(np.exp(1j * turn))))),
+    }
+    maps = {
+        "kinematics": (kinematics.outputs, kinematics.generalised_force(eta, learned.load), seen),
+        "polynomial": (learned.polynomial, learned.polynomial(eta), {}),
+        "network": (learned.network, learned.network(eta), {}),
+    }
+    exact = exact_forces(basis, learned.load, eta)
+    rows = [
+        {
+            "study": study_name,
+            "variant": variant,
+            "map": name,
+            "form": fitted.form,
+            "parameters": fitted.parameter_count,
+            "force_relative_error": relative_error(forces, exact),
+            **more,
+        }
+        for name, (fitted, forces, more) in maps.items()
+    ]
+    return pd.DataFrame(rows)
+
+
+def exact_forces(basis: ModalBasis, load: Forces, eta: Array) -> Array:
+    """Q (k, r) at η (k, r) from the kinematics, at a factor of 1."""
+    beam = chain(basis.structure)
+    at = configuration(beam, eta @ basis.modes.T)
+    return generalised_forces(beam, at, np.zeros_like(load.on_centres), *load) @ basis.modes
+
+
+def relative_error(found: Array, expected: Array) -> float:
+    """‖found − expected‖ / ‖expected‖ over all samples and coordinates."""
+    return float(np.linalg.norm(found - expected) / np.linalg.norm(expected))
