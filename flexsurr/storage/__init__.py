@@ -4,7 +4,6 @@ from flexsurr.storage.atomic import replacing, write_json
 from flexsurr.storage.errors import StorageError
 from flexsurr.storage.manifest import (
     Manifest,
-    Scales,
     ShardEntry,
     build_manifest,
     read_manifest,
@@ -20,6 +19,7 @@ from flexsurr.storage.samples import (
     read_samples,
     write_samples,
 )
+from flexsurr.storage.scales import Scales
 
 __all__ = [
     "Manifest",

@@ -15,6 +15,7 @@ from flexsurr.storage.atomic import write_json
 from flexsurr.storage.errors import StorageError
 from flexsurr.storage.moments import Moments
 from flexsurr.storage.parquet import FORMAT_VERSION, Shard, ShardMetadata, read_shard
+from flexsurr.storage.scales import Scales
 
 SPLIT_STREAM = (0, 1)  # keeps the split's random numbers apart from those of any trajectory
 
@@ -31,17 +32,11 @@ class ShardEntry:
 
 
 @dataclass(frozen=True)
-class Scales:
-    """Of the training trajectories, in the order x, then dx (2d,): mean, standard deviation, largest size."""
-
-    mean: tuple[float, ...]
-    standard_deviation: tuple[float, ...]
-    largest: tuple[float, ...]
-
-
-@dataclass(frozen=True)
 class Manifest:
-    """A dataset. `folder` is where the manifest was read from or will be written to."""
+    """A dataset. `folder` is where the manifest was read from or will be written to.
+
+    `scales` are those of the training trajectories.
+    """
 
     folder: Path
     study: str
@@ -132,11 +127,7 @@ def build_manifest(
         shards=tuple(sorted(entries, key=lambda entry: entry.first)),
         train=train,
         validation=validation,
-        scales=Scales(
-            tuple(moments.mean.tolist()),
-            tuple(np.sqrt(moments.variance).tolist()),
-            tuple(moments.largest.tolist()),
-        ),
+        scales=Scales.of_moments(moments),
         failures=tuple(failures),
     )
 

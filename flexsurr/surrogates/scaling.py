@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexsurr.simulation.rhs import Array
+from flexsurr.storage import Scales
 
 
 @dataclass(frozen=True)
@@ -102,38 +103,36 @@ class FeatureScaling:
 StateScaling = Scaling | PairScaling | FeatureScaling
 
 
-def canonical_scaling(x: Array, dx: Array) -> Scaling:
-    """Scaling of states `x` (m, 2r) and their derivatives `dx` (m, 2r).
+def canonical_scaling(scales: Scales) -> Scaling:
+    """Scaling of samples of these `scales` of 2r states and 2r derivatives.
 
     The largest |q| and |p| become one; the energy's scale balances both equations:
     s_H² = s_p rms(q̇) · s_q rms(ṗ). Raises ValueError where q, p or a derivative is zero throughout.
     """
-    r = x.shape[1] // 2
-    q, p = float(np.max(np.abs(x[:, :r]))), float(np.max(np.abs(x[:, r:])))
-    rates = float(np.sqrt(np.mean(dx[:, :r] ** 2))), float(np.sqrt(np.mean(dx[:, r:] ** 2)))
-    return Scaling(q=q, p=p, energy=float(np.sqrt(p * rates[0] * q * rates[1])))
+    q, p = (float(np.max(part)) for part in np.split(np.array(scales.largest), 4)[:2])
+    of_dq, of_dp = (float(np.sqrt(np.mean(part**2))) for part in np.split(scales.root_mean_square, 4)[2:])
+    return Scaling(q=q, p=p, energy=float(np.sqrt(p * of_dq * q * of_dp)))
 
 
-def pair_scaling(x: Array, dx: Array) -> PairScaling:
-    """Pair scaling of states `x` (m, 2r) and their derivatives `dx` (m, 2r).
+def pair_scaling(scales: Scales) -> PairScaling:
+    """Pair scaling of samples of these `scales` of 2r states and 2r derivatives.
 
     The largest |q_k| of each pair and the largest |p_k| of any become one; the unit of time is that of the
     rates q̇_k, the root mean square of all. Raises ValueError where a coordinate or all rates are zero.
     """
-    r = x.shape[1] // 2
-    q = np.max(np.abs(x[:, :r]), axis=0)
-    action = float(np.max(q * np.max(np.abs(x[:, r:]), axis=0)))
+    q, p = np.split(np.array(scales.largest), 4)[:2]
+    action = float(np.max(q * p))
     _check_positive("q", float(np.min(q)))
-    frequency = float(np.sqrt(np.mean((dx[:, :r] / q) ** 2)))
+    rates = np.split(scales.root_mean_square, 4)[2]
+    frequency = float(np.sqrt(np.mean((rates / q) ** 2)))
     return PairScaling(q=tuple(q.tolist()), action=action, energy=action * frequency)
 
 
-def feature_scaling(x: Array, dx: Array) -> FeatureScaling:
-    """Standard deviation of each state of `x` and each rate of `dx` (m, 2r); ValueError where one is zero."""
-    return FeatureScaling(
-        x=tuple(np.std(x, axis=0).tolist()),
-        dx=tuple(np.std(dx, axis=0).tolist()),
-    )
+def feature_scaling(scales: Scales) -> FeatureScaling:
+    """Standard deviation of each state and of each rate (2r,); ValueError where one is zero."""
+    deviations = scales.standard_deviation
+    count = len(deviations) // 2
+    return FeatureScaling(x=deviations[:count], dx=deviations[count:])
 
 
 def _check_positive(name: str, value: float) -> None:

@@ -3,13 +3,14 @@
 import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from flexsurr.simulation.rhs import Array
-from flexsurr.storage import read_manifest, read_shards
+from flexsurr.storage import Scales, read_manifest, read_shards
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +30,11 @@ class Dataset:
     state_names: tuple[str, ...]
     state_units: tuple[str, ...]
     sha256: str
+
+    @cached_property
+    def scales(self) -> Scales:
+        """Of the training samples."""
+        return Scales.of(self.x_train, self.dx_train)
 
 
 def load_dataset(manifest_path: str | Path) -> Dataset:

@@ -10,7 +10,7 @@ from typing import Literal
 import pandas as pd
 
 from flexsurr.config.sweep import Trial
-from flexsurr.simulation.rhs import Array
+from flexsurr.storage import Scales
 from flexsurr.surrogates import (
     HNN,
     MLP,
@@ -37,7 +37,7 @@ from flexsurr.training.port_hamiltonian_training import InverseThenForward, untr
 from flexsurr.training.progress import Progress
 
 NETWORKS: dict[str, type[Network]] = {form.architecture: form for form in (HNN, MLP, DissipativeHNN)}
-SCALINGS: dict[str, Callable[[Array, Array], StateScaling]] = {
+SCALINGS: dict[str, Callable[[Scales], StateScaling]] = {
     "canonical": canonical_scaling,
     "per_feature": feature_scaling,
 }
@@ -124,7 +124,7 @@ def _untrained(trial: Trial, dataset: Dataset) -> Network:
     spread: Literal["torch", "wide"] = "torch" if trial.optimiser in FIRST_ORDER else "wide"
     return form(
         parameters=initial_parameters(form, len(dataset.state_names), trial.hidden, spread, trial.seed),
-        scaling=SCALINGS[trial.scaling](dataset.x_train, dataset.dx_train),
+        scaling=SCALINGS[trial.scaling](dataset.scales),
         state_names=dataset.state_names,
         state_units=dataset.state_units,
         hidden=trial.hidden,

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexsurr.simulation.rhs import Array
+from flexsurr.storage import Scales
 from flexsurr.surrogates import PairScaling, PolynomialPortHamiltonian, StateScaling, pair_scaling
 from flexsurr.surrogates.monomials import (
     Exponents,
@@ -109,8 +110,8 @@ def fit_port_hamiltonian(dataset: Dataset, degree: int) -> PolynomialPortHamilto
     NotPositiveDefinite if its mass matrix is none at a validation state, ValueError where the samples don't
     vary, LinAlgError where they are not finite.
     """
-    scaling = pair_scaling(dataset.x_train, dataset.dx_train)
-    problem = InverseDynamics(degree, scaling, channel_spread(scaling, dataset.x_train, dataset.dx_train))
+    scaling = pair_scaling(dataset.scales)
+    problem = InverseDynamics(degree, scaling, channel_spread(scaling, dataset.scales))
     problem.add(dataset.x_train, dataset.dx_train)
     candidates = [problem.solve(even, dataset.state_names, dataset.state_units) for even in (True, False)]
     q = dataset.x_validation[:, : problem.pairs]
@@ -140,11 +141,11 @@ def stream_port_hamiltonian(
     return problem.solve(True, state_names, state_units)
 
 
-def channel_spread(scaling: StateScaling, x: Array, dx: Array) -> Array:
+def channel_spread(scaling: StateScaling, scales: Scales) -> Array:
     """Standard deviations (2r,) of the scaled p and ṗ; ValueError where one does not vary."""
-    count, r = x.shape[1], x.shape[1] // 2
-    momenta, forces = x[:, r:] / scaling.states(count)[r:], dx[:, r:] / scaling.rates(count)[r:]
-    spread = np.concatenate([np.std(momenta, axis=0), np.std(forces, axis=0)])
+    _, momenta, _, forces = np.split(np.array(scales.standard_deviation), 4)
+    count, r = 2 * momenta.size, momenta.size
+    spread = np.concatenate([momenta / scaling.states(count)[r:], forces / scaling.rates(count)[r:]])
     if not np.all(spread > 0.0):
         raise ValueError(f"p and its derivative must vary over the samples; their spread is {spread}")
     return spread

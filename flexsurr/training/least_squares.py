@@ -35,7 +35,7 @@ def fit_polynomial(dataset: Dataset, degree: int) -> PolynomialHamiltonian:
 
     Raises ValueError where the samples don't vary, and LinAlgError where they are not finite.
     """
-    scaling = canonical_scaling(dataset.x_train, dataset.dx_train)
+    scaling = canonical_scaling(dataset.scales)
     count = len(dataset.state_names)
     exponents = monomials_to_degree(count, degree)
     triangle = _reduced(

@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from flexsurr.simulation.rhs import Array
+from flexsurr.storage import Scales
 from flexsurr.surrogates import NetworkPortHamiltonian
 from flexsurr.surrogates.packed import symmetric
 from flexsurr.training.inverse_dynamics import channel_spread
@@ -40,7 +41,7 @@ class PortHamiltonianObjective:
         if forward:
             weights = output_weights(y)
         else:
-            weights = 1.0 / (count * channel_spread(network.scaling, x, dx) ** 2)
+            weights = 1.0 / (count * channel_spread(network.scaling, Scales.of(x, dx)) ** 2)
         return cls(network, x / network.scaling.states(count), y, np.sqrt(weights / len(x)), forward)
 
     @cached_property

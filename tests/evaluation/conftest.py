@@ -15,6 +15,7 @@ from flexsurr.config.study import (
     TipForce,
 )
 from flexsurr.simulation import simulate
+from flexsurr.storage import Scales
 from flexsurr.surrogates import PolynomialHamiltonian, canonical_scaling
 
 
@@ -70,7 +71,7 @@ def fitted(study, basis):
     x = np.concatenate([simulate(model, np.linspace(0.0, 0.1, 51), x0, tight).x for x0 in starts])
     dx = np.array([model.derivative(0.0, state) for state in x])
     exponents = np.array([(i, 2) for i in range(0, 9, 2)] + [(i, 0) for i in range(2, 11, 2)])
-    scaling = canonical_scaling(x, dx)
+    scaling = canonical_scaling(Scales.of(x, dx))
 
     def surrogate(coefficients):
         return PolynomialHamiltonian(coefficients, scaling, model.state_names, model.state_units, exponents)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from random_surrogates import PAIRS, SCALING, network, polynomial
 
+from flexsurr.storage import Scales
 from flexsurr.surrogates import (
     HNN,
     MLP,
@@ -26,7 +27,7 @@ def test_scaled_samples_are_of_order_one():
     generator = np.random.default_rng(0)
     x = generator.normal(size=(500, 4)) * [0.2, 0.3, 5.0, 1.0]
     dx = generator.normal(size=(500, 4)) * [30.0, 10.0, 100.0, 50.0]
-    scaling = canonical_scaling(x, dx)
+    scaling = canonical_scaling(Scales.of(x, dx))
     scaled, rates = x / scaling.states(4), dx / scaling.rates(4)
     assert np.max(np.abs(scaled[:, :2])) == pytest.approx(1.0)
     assert np.max(np.abs(scaled[:, 2:])) == pytest.approx(1.0)
@@ -87,16 +88,32 @@ def test_scales_of_samples_by_pair_and_by_feature():
     generator = np.random.default_rng(0)
     x = generator.normal(size=(500, 4)) * [0.2, 0.03, 5.0, 1.0]
     dx = generator.normal(size=(500, 4)) * [30.0, 10.0, 100.0, 50.0]
-    scaled = x / pair_scaling(x, dx).states(4)
+    scaled = x / pair_scaling(Scales.of(x, dx)).states(4)
     np.testing.assert_allclose(np.max(np.abs(scaled[:, :2]), axis=0), 1.0)
     assert np.max(np.abs(scaled[:, 2:])) == pytest.approx(1.0)
-    scaling = feature_scaling(x, dx)
+    scaling = feature_scaling(Scales.of(x, dx))
     np.testing.assert_allclose(np.std(x / scaling.states(4), axis=0), 1.0)
     np.testing.assert_allclose(np.std(dx / scaling.rates(4), axis=0), 1.0)
     with pytest.raises(ValueError, match="scale of x_2"):
-        feature_scaling(x * [1.0, 0.0, 1.0, 1.0], dx)
+        feature_scaling(Scales.of(x * [1.0, 0.0, 1.0, 1.0], dx))
     with pytest.raises(ValueError, match="scale of q"):
-        pair_scaling(x * [1.0, 0.0, 1.0, 1.0], dx)
+        pair_scaling(Scales.of(x * [1.0, 0.0, 1.0, 1.0], dx))
+
+
+def test_scalings_of_scales_are_those_of_the_samples():
+    """Each number by its definition, of samples whose means are not zero."""
+    generator = np.random.default_rng(3)
+    x = generator.normal(0.7, 1.0, (300, 4)) * [0.2, 0.03, 5.0, 1.0]
+    dx = generator.normal(-2.0, 1.0, (300, 4)) * [30.0, 10.0, 100.0, 50.0]
+    scales = Scales.of(x, dx)
+    (q_1, q_2, p_1, p_2), rms = np.max(np.abs(x), axis=0), lambda values: np.sqrt(np.mean(values**2))
+    plain, pairs, features = canonical_scaling(scales), pair_scaling(scales), feature_scaling(scales)
+    assert (plain.q, plain.p) == (max(q_1, q_2), max(p_1, p_2))
+    assert plain.energy**2 == pytest.approx(plain.p * rms(dx[:, :2]) * plain.q * rms(dx[:, 2:]), rel=1e-14)
+    assert pairs.q == (q_1, q_2)
+    assert pairs.action == max(q_1 * p_1, q_2 * p_2)
+    assert pairs.energy / pairs.action == pytest.approx(rms(dx[:, :2] / [q_1, q_2]), rel=1e-14)
+    np.testing.assert_allclose([features.x, features.dx], [np.std(x, axis=0), np.std(dx, axis=0)], rtol=1e-14)
 
 
 def test_a_canonical_scaling_by_feature_is_the_plain_one():

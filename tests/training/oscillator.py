@@ -45,7 +45,7 @@ def network(dataset: Dataset, architecture="hnn", hidden=(6,), activation="softp
     form = FORMS[architecture]
     return form(
         initial_parameters(form, len(dataset.state_names), hidden, "wide", seed),
-        canonical_scaling(dataset.x_train, dataset.dx_train),
+        canonical_scaling(dataset.scales),
         dataset.state_names,
         dataset.state_units,
         hidden,

@@ -15,7 +15,6 @@ from flexsurr.surrogates.monomials import monomials_to_degree
 from flexsurr.surrogates.packed import pack
 from flexsurr.training import fit, nmse, split_dataset
 from flexsurr.training.inverse_dynamics import (
-    InverseDynamics,
     channel_spread,
     fit_port_hamiltonian,
     stream_port_hamiltonian,
@@ -96,7 +95,7 @@ def test_fed_in_pieces_it_is_the_same(monkeypatch):
     expected = fit_port_hamiltonian(dataset, 4)
     monkeypatch.setattr("flexsurr.training.inverse_dynamics.CHUNK", 9_000)
     blocks = zip(np.array_split(dataset.x_train, 7), np.array_split(dataset.dx_train, 7), strict=True)
-    spread = channel_spread(expected.scaling, dataset.x_train, dataset.dx_train)
+    spread = channel_spread(expected.scaling, dataset.scales)
     found = stream_port_hamiltonian(blocks, 4, expected.scaling, spread, NAMES, ("1",) * 4)
     np.testing.assert_allclose(found.parameters, expected.parameters, atol=1e-11)
 
@@ -143,9 +142,15 @@ def test_a_fit_says_how_well_each_state_is_met(tmp_path):
     np.testing.assert_allclose(result.validation_nmse_per_state, expected)
 
 
+def test_the_spread_is_that_of_the_scaled_momenta_and_forces():
+    dataset, scaling = sampled(truth_of(6)), truth_of(6).scaling
+    scaled = dataset.x_train / scaling.states(4), dataset.dx_train / scaling.rates(4)
+    expected = np.concatenate([np.std(part[:, R:], axis=0) for part in scaled])
+    np.testing.assert_allclose(channel_spread(scaling, dataset.scales), expected, rtol=1e-13)
+
+
 def test_momenta_that_do_not_vary_are_refused():
     dataset = sampled(truth_of(6))
     still = replace(dataset, x_train=dataset.x_train * [1, 1, 1, 0])
-    scaling = InverseDynamics(2, truth_of(6).scaling, np.ones(4)).scaling
     with pytest.raises(ValueError, match="must vary"):
-        channel_spread(scaling, still.x_train, still.dx_train)
+        channel_spread(truth_of(6).scaling, still.scales)

@@ -33,7 +33,7 @@ def random_polynomial(count, degree, keep):
     exponents = exponents[keep(exponents[:, :r].sum(axis=1), exponents[:, r:].sum(axis=1))]
     return PolynomialHamiltonian(
         np.random.default_rng(1).normal(size=len(exponents)),
-        canonical_scaling(dataset.x_train, dataset.dx_train),
+        canonical_scaling(dataset.scales),
         tuple(f"{kind}_{k}" for kind in "qp" for k in range(r)),
         ("1",) * count,
         exponents,

@@ -91,7 +91,7 @@ def test_the_forward_loss_is_the_nmse():
     objective = objective_of(ODD, True)
     expected = nmse(objective.network.derivative(0.0, ODD.x_train), ODD.dx_train)
     assert objective.loss(objective.network.parameters) == pytest.approx(expected)
-    spread = channel_spread(objective.network.scaling, ODD.x_train, ODD.dx_train)
+    spread = channel_spread(objective.network.scaling, ODD.scales)
     weights = (objective_of(ODD, False).roots * spread) ** 2
     np.testing.assert_allclose(weights, 1.0 / (4 * len(ODD.x_train)))
 
