@@ -9,9 +9,9 @@ from typing import Any
 from flexsurr.cli.alone import alone_in
 from flexsurr.cli.command import Job, command
 from flexsurr.config.sweep import Trial
-from flexsurr.storage import replacing, write_json
+from flexsurr.storage import read_manifest, replacing, write_json
 from flexsurr.surrogates import save
-from flexsurr.training import Fit, fit, load_dataset
+from flexsurr.training import Fit, ShardedDataset, fit
 from flexsurr.training.sweep import run_id
 from flexsurr.training.tracking import read_store, tracked
 
@@ -31,7 +31,7 @@ def main(job: Job, manifest: Path, store: Path, folder: Path) -> None:
 
 def _train(job: Job, manifest: Path, store: Path, folder: Path) -> None:
     trial = Trial.model_validate(job["trial"])
-    dataset = load_dataset(manifest)
+    dataset = ShardedDataset(read_manifest(manifest))
     described = {**job, "dataset_sha256": dataset.sha256}
     write_json(folder / "parameters.json", described)
     page_store = read_store(store)

@@ -62,6 +62,13 @@ class Manifest:
         """Number of samples of all trajectories."""
         return sum(entry.samples for entry in self.shards)
 
+    @property
+    def sha256(self) -> str:
+        """The hash of all that training depends on: the states, what the shards hold, and the split."""
+        shards = [entry.sha256 for entry in self.shards]
+        content = [self.state_names, self.state_units, shards, self.train, self.validation]
+        return hashlib.sha256(json.dumps(content).encode()).hexdigest()
+
 
 def split_trajectories(
     count: int, training_fraction: float, seed: int
@@ -167,21 +174,25 @@ def read_shards(manifest: Manifest) -> Iterator[Shard]:
     Raises StorageError naming the shard that is not the recorded file or belongs elsewhere.
     """
     for entry in manifest.shards:
-        path = manifest.folder / entry.file
-        shard = read_shard(path, entry.sha256)
-        expected = replace(
-            shard.metadata,
-            study=manifest.study,
-            variant=manifest.variant,
-            seed=manifest.seed,
-            configuration=manifest.configuration,
-            state_names=manifest.state_names,
-            state_units=manifest.state_units,
-            first=entry.first,
-            count=entry.count,
-        )
-        _check_belongs(path, shard.metadata, expected)
-        yield shard
+        yield _read_recorded(manifest, entry)  # kept in no variable: whoever asks for the next has this one
+
+
+def _read_recorded(manifest: Manifest, entry: ShardEntry) -> Shard:
+    path = manifest.folder / entry.file
+    shard = read_shard(path, entry.sha256)
+    expected = replace(
+        shard.metadata,
+        study=manifest.study,
+        variant=manifest.variant,
+        seed=manifest.seed,
+        configuration=manifest.configuration,
+        state_names=manifest.state_names,
+        state_units=manifest.state_units,
+        first=entry.first,
+        count=entry.count,
+    )
+    _check_belongs(path, shard.metadata, expected)
+    return shard
 
 
 def _entry(path: Path, shard: Shard) -> ShardEntry:

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Any
 
-from flexsurr.training.dataset import Dataset, load_dataset, split_dataset
+from flexsurr.training.dataset import Dataset, ShardedDataset, load_dataset, split_dataset
 from flexsurr.training.fitting import Fit, fit
 from flexsurr.training.learned_maps import fit_network_map, fit_polynomial_map
 from flexsurr.training.losses import nmse, nmse_per_state
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Dataset",
     "Fit",
+    "ShardedDataset",
     "expand",
     "fit",
     "fit_network_map",

@@ -2,7 +2,7 @@
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
@@ -23,13 +23,13 @@ from flexsurr.surrogates import (
     feature_scaling,
 )
 from flexsurr.training.adam import Adam
-from flexsurr.training.dataset import Dataset
+from flexsurr.training.dataset import Block, Dataset, SampleSource, for_each_piece
 from flexsurr.training.epochs import Limits, Loss, Report, run_epochs
 from flexsurr.training.initialisation import initial_parameters
 from flexsurr.training.inverse_dynamics import NotPositiveDefinite, fit_port_hamiltonian
 from flexsurr.training.least_squares import fit_polynomial
 from flexsurr.training.levenberg_marquardt import LevenbergMarquardt
-from flexsurr.training.losses import nmse, nmse_per_state
+from flexsurr.training.losses import FieldErrors
 from flexsurr.training.objective import Objective
 from flexsurr.training.optimiser import Optimiser
 from flexsurr.training.port_hamiltonian_objective import PortHamiltonianObjective
@@ -64,9 +64,10 @@ class Fit:
     validation_nmse_per_state: tuple[float, ...]
 
 
-def fit(trial: Trial, dataset: Dataset, folder: str | Path, report: Report | None = None) -> Fit:
-    """Fit a surrogate to `dataset`, resuming from the checkpoint of the same trial and dataset in `folder`.
+def fit(trial: Trial, source: SampleSource, folder: str | Path, report: Report | None = None) -> Fit:
+    """Fit a surrogate to `source`, resuming from the checkpoint of the same trial and dataset in `folder`.
 
+    Least squares reads the samples block by block; every other optimiser has them all in memory.
     Ends after the trial's epochs, when validation has not improved by 1 % over `patience` of them, after
     `time_limit_s`, or when the optimiser has nothing left to do, and keeps the weights that validated
     best. `report(epoch, train_loss, validation_loss, wall_s)` is called after each epoch. A loss that is
@@ -76,7 +77,8 @@ def fit(trial: Trial, dataset: Dataset, folder: str | Path, report: Report | Non
     """
     folder = Path(folder)
     if trial.optimiser == "least_squares":
-        return _fit_linear(trial, dataset, report)
+        return _fit_linear(trial, source, report)
+    dataset = source.loaded()
     network, training, validation, optimiser = _begun(trial, dataset)
     progress, reason = run_epochs(
         optimiser,
@@ -88,6 +90,7 @@ def fit(trial: Trial, dataset: Dataset, folder: str | Path, report: Report | Non
         report,
     )
     network = replace(network, parameters=progress.best_parameters)
+    errors = _errors(network, dataset.validation_blocks())
     return Fit(
         surrogate=network,
         status="failed" if reason else "finished",
@@ -99,7 +102,7 @@ def fit(trial: Trial, dataset: Dataset, folder: str | Path, report: Report | Non
         validation_nmse=validation.loss(network.parameters),
         parameters=network.parameter_count,
         history=progress.history(),
-        validation_nmse_per_state=_per_state(network, dataset),
+        validation_nmse_per_state=tuple(errors.nmse_per_state().tolist()),
     )
 
 
@@ -154,22 +157,21 @@ def _optimiser(trial: Trial, objective: Objective) -> Optimiser:
     )
 
 
-def _fit_linear(trial: Trial, dataset: Dataset, report: Report | None) -> Fit:
+def _fit_linear(trial: Trial, source: SampleSource, report: Report | None) -> Fit:
     assert trial.degree is not None  # a Trial of a polynomial has one
     start = time.perf_counter()
     reason = ""
     surrogate: Surrogate
     if trial.architecture == "polynomial":
-        surrogate = fit_polynomial(dataset, trial.degree)
+        surrogate = fit_polynomial(source, trial.degree)
     else:
         try:
-            surrogate = fit_port_hamiltonian(dataset, trial.degree)
+            surrogate = fit_port_hamiltonian(source, trial.degree)
         except NotPositiveDefinite as failure:
             surrogate, reason = failure.surrogate, str(failure)
-    losses = (
-        nmse(surrogate.derivative(0.0, dataset.x_train), dataset.dx_train),
-        nmse(surrogate.derivative(0.0, dataset.x_validation), dataset.dx_validation),
-    )
+    training = _errors(surrogate, source.training_blocks())
+    validation = _errors(surrogate, source.validation_blocks())
+    losses = training.nmse(), validation.nmse()
     progress = Progress(math.inf, surrogate.parameters)
     progress.add(time.perf_counter() - start, *losses, surrogate.parameters)
     if report is not None:
@@ -185,11 +187,12 @@ def _fit_linear(trial: Trial, dataset: Dataset, report: Report | None) -> Fit:
         validation_nmse=losses[1],
         parameters=surrogate.parameter_count,
         history=progress.history(),
-        validation_nmse_per_state=_per_state(surrogate, dataset),
+        validation_nmse_per_state=tuple(validation.nmse_per_state().tolist()),
     )
 
 
-def _per_state(surrogate: Surrogate, dataset: Dataset) -> tuple[float, ...]:
-    """The nmse of each state's derivative over the validation samples."""
-    predicted = surrogate.derivative(0.0, dataset.x_validation)
-    return tuple(nmse_per_state(predicted, dataset.dx_validation).tolist())
+def _errors(surrogate: Surrogate, blocks: Iterator[Block]) -> FieldErrors:
+    """Of the surrogate's field over all samples of the blocks."""
+    errors = FieldErrors(surrogate)
+    for_each_piece(blocks, errors.add)
+    return errors

@@ -8,8 +8,6 @@ are linear in the coefficients of M, in K and in C. A polynomial M⁻¹ would be
 together with the field it makes, and fits far worse.
 """
 
-from collections.abc import Iterable
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -23,8 +21,8 @@ from flexsurr.surrogates.monomials import (
     monomials_to_degree,
 )
 from flexsurr.surrogates.packed import packed_size, semidefinite_factor, symmetric
-from flexsurr.training.dataset import Dataset
-from flexsurr.training.losses import nmse
+from flexsurr.training.dataset import SampleSource, for_each_piece
+from flexsurr.training.losses import FieldErrors
 from flexsurr.training.triangle import Triangle
 
 CHUNK = 1 << 22  # elements of the matrix that exist at a time: 32 MB
@@ -103,42 +101,47 @@ class InverseDynamics:
         )
 
 
-def fit_port_hamiltonian(dataset: Dataset, degree: int) -> PolynomialPortHamiltonian:
+def fit_port_hamiltonian(source: SampleSource, degree: int) -> PolynomialPortHamiltonian:
     """The polynomial port-Hamiltonian surrogate of total degree ≤ `degree` in M, from the training samples.
 
-    Odd powers are kept where they make validation better by a factor of `AS_GOOD`. Raises
-    NotPositiveDefinite if its mass matrix is none at a validation state, ValueError where the samples don't
-    vary, LinAlgError where they are not finite.
+    Odd powers are kept where they make validation better by a factor of `AS_GOOD`. Samples are read twice,
+    block by block. Raises NotPositiveDefinite if its mass matrix is none at a validation state, ValueError
+    where the samples don't vary or are not finite.
     """
-    scaling = pair_scaling(dataset.scales)
-    problem = InverseDynamics(degree, scaling, channel_spread(scaling, dataset.scales))
-    problem.add(dataset.x_train, dataset.dx_train)
-    candidates = [problem.solve(even, dataset.state_names, dataset.state_units) for even in (True, False)]
-    q = dataset.x_validation[:, : problem.pairs]
-    losses = [
-        nmse(candidate.derivative(0.0, dataset.x_validation), dataset.dx_validation)
-        if is_positive_definite(candidate, q).all()
-        else np.inf
-        for candidate in candidates
-    ]
-    if not np.isfinite(min(losses)):
-        raise NotPositiveDefinite(candidates[0], q[np.argmin(is_positive_definite(candidates[0], q))])
-    return candidates[0 if losses[0] <= AS_GOOD * losses[1] else 1]
+    scaling = pair_scaling(source.scales)
+    problem = InverseDynamics(degree, scaling, channel_spread(scaling, source.scales))
+    for_each_piece(source.training_blocks(), problem.add)
+    even, full = (
+        _Candidate(problem.solve(kind, source.state_names, source.state_units)) for kind in (True, False)
+    )
+    for_each_piece(source.validation_blocks(), even.add, full.add)
+    if even.indefinite_at is not None and full.indefinite_at is not None:
+        raise NotPositiveDefinite(even.surrogate, even.indefinite_at)
+    return even.surrogate if even.loss() <= AS_GOOD * full.loss() else full.surrogate
 
 
-def stream_port_hamiltonian(
-    blocks: Iterable[tuple[Array, Array]],
-    degree: int,
-    scaling: PairScaling,
-    spread: Array,
-    state_names: tuple[str, ...],
-    state_units: tuple[str, ...],
-) -> PolynomialPortHamiltonian:
-    """The same with even powers from `blocks` of samples (x, dx), of which one is held at a time."""
-    problem = InverseDynamics(degree, scaling, spread)
-    for x, dx in blocks:
-        problem.add(x, dx)
-    return problem.solve(True, state_names, state_units)
+class _Candidate:
+    """A fitted surrogate as the validation samples show it, block by block."""
+
+    def __init__(self, surrogate: PolynomialPortHamiltonian) -> None:
+        self.surrogate = surrogate
+        self.indefinite_at: Array | None = None  # the first q (r,) where the mass matrix is no such thing
+        self._errors = FieldErrors(surrogate)
+
+    def add(self, x: Array, dx: Array) -> None:
+        """Samples of states `x` and derivatives `dx` (m, 2r) in their units."""
+        if self.indefinite_at is not None:
+            return
+        q = x[:, : self.surrogate.pairs]
+        positive = is_positive_definite(self.surrogate, q)
+        if positive.all():
+            self._errors.add(x, dx)
+        else:
+            self.indefinite_at = q[np.argmin(positive)].copy()  # a view would keep the whole block
+
+    def loss(self) -> float:
+        """The nmse; infinite where the mass matrix is not positive definite."""
+        return np.inf if self.indefinite_at is not None else self._errors.nmse()
 
 
 def channel_spread(scaling: StateScaling, scales: Scales) -> Array:

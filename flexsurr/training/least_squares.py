@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexsurr.simulation.rhs import Array
-from flexsurr.surrogates import PolynomialHamiltonian, canonical_scaling
+from flexsurr.storage import Scales
+from flexsurr.surrogates import PolynomialHamiltonian, Scaling, canonical_scaling
 from flexsurr.surrogates.monomials import (
     Exponents,
     differentiate,
@@ -22,43 +23,79 @@ from flexsurr.surrogates.monomials import (
     monomials_to_degree,
 )
 from flexsurr.surrogates.surrogate import symplectic
-from flexsurr.training.dataset import Dataset
-from flexsurr.training.losses import nmse, output_weights
+from flexsurr.training.dataset import SampleSource, for_each_piece
+from flexsurr.training.losses import FieldErrors, weights_of_variance
 from flexsurr.training.triangle import Triangle
 
 CHUNK = 1 << 21  # elements of the matrix that exist at a time: 16 MB
 AS_GOOD = 2.0  # losses within this factor of the least count as equal
 
 
-def fit_polynomial(dataset: Dataset, degree: int) -> PolynomialHamiltonian:
+def fit_polynomial(source: SampleSource, degree: int) -> PolynomialHamiltonian:
     """The polynomial Hamiltonian of total degree ≤ `degree` with the least nmse on the training samples.
 
-    Raises ValueError where the samples don't vary, and LinAlgError where they are not finite.
+    Samples are read twice, block by block. Raises ValueError where they don't vary or are not finite.
     """
-    scaling = canonical_scaling(dataset.scales)
-    count = len(dataset.state_names)
-    exponents = monomials_to_degree(count, degree)
-    triangle = _reduced(
-        exponents,
-        dataset.x_train / scaling.states(count),
-        dataset.dx_train / scaling.rates(count),
-    )
-    candidates = []
-    for chosen in _subsets(exponents):
-        polynomial = PolynomialHamiltonian(
-            triangle.solve(chosen),
-            scaling,
-            dataset.state_names,
-            dataset.state_units,
-            exponents[chosen],
-        )
-        loss = nmse(polynomial.derivative(0.0, dataset.x_validation), dataset.dx_validation)
-        candidates.append((loss, polynomial))
-    least = min(loss for loss, _ in candidates)
+    problem = HamiltonEquations(degree, canonical_scaling(source.scales), source.scales)
+    for_each_piece(source.training_blocks(), problem.add)
+    candidates = [
+        problem.solve(chosen, source.state_names, source.state_units)
+        for chosen in _subsets(problem.exponents)
+    ]
+    errors = [FieldErrors(candidate) for candidate in candidates]
+    for_each_piece(source.validation_blocks(), *(error.add for error in errors))
+    losses = [error.nmse() for error in errors]
     return min(
-        (polynomial for loss, polynomial in candidates if loss <= AS_GOOD * least),
+        (
+            polynomial
+            for loss, polynomial in zip(losses, candidates, strict=True)
+            if loss <= AS_GOOD * min(losses)
+        ),
         key=lambda polynomial: polynomial.parameter_count,
     )
+
+
+class HamiltonEquations:
+    """The least-squares problem for monomials up to `degree`, fed block by block.
+
+    Each state's rate counts relative to its variance, which `scales` know. Memory is that of one block and
+    of a triangle of the unknowns, however many samples there are.
+    """
+
+    def __init__(self, degree: int, scaling: Scaling, scales: Scales) -> None:
+        self.scaling = scaling
+        deviations = np.split(np.array(scales.standard_deviation), 2)[1]
+        self._count = deviations.size
+        self._rates = scaling.rates(self._count)
+        self._roots = np.sqrt(weights_of_variance((deviations / self._rates) ** 2))
+        self.exponents = monomials_to_degree(self._count, degree)
+        self._lowered, self._derivative = differentiate(self.exponents)
+        self._triangle = Triangle(len(self.exponents))
+
+    def add(self, x: Array, dx: Array) -> None:
+        """Samples of states `x` and derivatives `dx` (m, 2r) in their units."""
+        x, y = x / self.scaling.states(self._count), dx / self._rates
+        step = max(CHUNK // (self._count * (len(self.exponents) + 1)), 1)
+        for first in range(0, len(x), step):
+            self._triangle.add(self._rows(x[first : first + step], y[first : first + step]))
+
+    def _rows(self, x: Array, y: Array) -> Array:
+        """[fields of the monomials, y] of scaled samples, both weighted: (m · 2r, count + 1)."""
+        # (samples, monomial, 2r): the field of each monomial
+        fields = symplectic(
+            np.einsum("sk,jki->sij", evaluate_monomials(self._lowered, x), self._derivative, optimize=True)
+        )
+        rows = np.concatenate([fields, y[:, None, :]], axis=1) * self._roots
+        return rows.transpose(0, 2, 1).reshape(-1, len(self.exponents) + 1)
+
+    def solve(
+        self, chosen: NDArray[np.bool_], state_names: tuple[str, ...], state_units: tuple[str, ...]
+    ) -> PolynomialHamiltonian:
+        """The fitted surrogate with the `chosen` monomials (a mask) alone."""
+        coefficients = self._triangle.solve(chosen)
+        return PolynomialHamiltonian(
+            coefficients, self.scaling, state_names, state_units, self.exponents[chosen]
+        )
 
 
 def _subsets(exponents: Exponents) -> list[NDArray[np.bool_]]:
@@ -69,22 +106,3 @@ def _subsets(exponents: Exponents) -> list[NDArray[np.bool_]]:
     mechanical = (in_p == 0) | (in_p == 2)
     even = (in_q % 2 == 0) & (in_p % 2 == 0)
     return [everything, even, mechanical, mechanical & even]
-
-
-def _reduced(exponents: Exponents, x: Array, y: Array) -> Triangle:
-    """Of the matrix [fields of the monomials, y], both weighted."""
-    d = x.shape[1]
-    lower, tensor = differentiate(exponents)
-    roots = np.sqrt(output_weights(y) / len(x))
-    step = max(CHUNK // (d * (len(exponents) + 1)), 1)
-    triangle = Triangle(len(exponents))
-    for first in range(0, len(x), step):
-        part = slice(first, first + step)
-        # (samples, monomial, d): the field of each monomial
-        fields = symplectic(
-            np.einsum("sk,jki->sij", evaluate_monomials(lower, x[part]), tensor, optimize=True)
-        )
-        rows = np.concatenate([fields, y[part, None, :]], axis=1) * roots
-        rows = rows.transpose(0, 2, 1).reshape(-1, len(exponents) + 1)
-        triangle.add(rows)
-    return triangle

@@ -3,6 +3,8 @@
 import numpy as np
 
 from flexsurr.simulation.rhs import Array
+from flexsurr.storage.moments import Moments
+from flexsurr.surrogates import Surrogate
 
 
 def output_weights(target: Array) -> Array:
@@ -10,10 +12,15 @@ def output_weights(target: Array) -> Array:
 
     `target` is (m, d). Raises ValueError for an output that does not vary: nothing is relative to it.
     """
-    variance = np.var(target, axis=0)
+    return weights_of_variance(np.var(target, axis=0))
+
+
+def weights_of_variance(variance: Array) -> Array:
+    """The same (d,) from the variance (d,) of each output."""
     if not np.all(variance > 0.0):
         raise ValueError(f"output {int(np.argmin(variance))} does not vary over the samples")
-    return 1.0 / (target.shape[1] * variance)
+    weights: Array = 1.0 / (variance.size * variance)
+    return weights
 
 
 def nmse(predicted: Array, target: Array) -> float:
@@ -25,3 +32,28 @@ def nmse_per_state(predicted: Array, target: Array) -> Array:
     """Mean squared error of each output over its target's variance, (m, d) -> (d,); their mean is `nmse`."""
     errors: Array = np.mean((predicted - target) ** 2, axis=0) * output_weights(target) * target.shape[1]
     return errors
+
+
+class FieldErrors:
+    """The nmse of a surrogate's field, gathered block by block."""
+
+    def __init__(self, surrogate: Surrogate) -> None:
+        self._surrogate = surrogate
+        count = len(surrogate.state_names)
+        self._squares = np.zeros(count)
+        self._target = Moments.of(np.empty((0, count)))
+
+    def add(self, x: Array, dx: Array) -> None:
+        """Samples of states `x` and derivatives `dx` (m, 2r) in their units."""
+        self._squares += np.sum((self._surrogate.derivative(0.0, x) - dx) ** 2, axis=0)
+        self._target = self._target.joined(Moments.of(dx))
+
+    def nmse_per_state(self) -> Array:
+        """As the function of that name (2r,), over all samples so far."""
+        variance = self._target.variance
+        errors: Array = self._squares / self._target.rows * weights_of_variance(variance) * variance.size
+        return errors
+
+    def nmse(self) -> float:
+        """Their mean."""
+        return float(np.mean(self.nmse_per_state()))

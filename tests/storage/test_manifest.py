@@ -51,6 +51,20 @@ def test_the_order_of_the_shards_does_not_matter(dataset):
     assert build(dataset[::-1]) == build(dataset)
 
 
+def test_the_hash_is_of_what_training_depends_on(dataset, make_shard):
+    manifest = build(dataset)
+    assert replace(manifest, study="wing", configuration="decaf").sha256 == manifest.sha256
+    others = [
+        replace(manifest, train=manifest.validation, validation=manifest.train),
+        replace(manifest, state_names=("eta_1", "q_1")),
+        replace(manifest, state_units=("1", "kg m2/s")),
+    ]
+    shard = make_shard(2, 2)
+    write_shard(dataset[1], replace(shard, x=shard.x + 1e-9))
+    others.append(build(dataset))
+    assert len({manifest.sha256, *(other.sha256 for other in others)}) == 5
+
+
 def test_scales_are_those_of_the_training_trajectories_alone(dataset):
     manifest = build(dataset)
     shards = [read_shard(path) for path in dataset]

@@ -3,26 +3,17 @@
 import numpy as np
 import pytest
 from oscillator import NAMES, UNITS, field, free_responses
+from shard_files import write_dataset
 
-from flexsurr.storage import Shard, ShardMetadata, StorageError, build_manifest, write_manifest, write_shard
-from flexsurr.training import load_dataset
-
-OF = {"study": "oscillator", "variant": "hamiltonian", "seed": 1, "configuration": "abc"}
+from flexsurr.storage import StorageError, read_manifest
+from flexsurr.training import ShardedDataset, load_dataset
 
 
 @pytest.fixture
 def manifest(tmp_path):
     """Three shards of two trajectories of ten samples."""
-    paths = []
-    for first in (0, 2, 4):
-        x = np.random.default_rng(first).uniform(-0.3, 0.3, (20, 2))
-        trajectory = np.repeat([first, first + 1], 10)
-        metadata = ShardMetadata(**OF, first=first, count=2, state_names=NAMES, state_units=UNITS)
-        paths.append(tmp_path / f"shard-{first}.parquet")
-        write_shard(paths[-1], Shard(trajectory, np.tile(np.arange(10) / 10, 2), x, field(x), metadata))
-    path = tmp_path / "manifest.json"
-    write_manifest(path, build_manifest(paths, **OF, trajectories=6, training_fraction=0.7))
-    return path
+    x = np.random.default_rng(0).uniform(-0.3, 0.3, (6, 10, 2))
+    return write_dataset(tmp_path, [(part, field(part)) for part in x], [2, 2, 2], NAMES, UNITS)
 
 
 def test_every_sample_lies_on_one_side(manifest):
@@ -36,14 +27,32 @@ def test_every_sample_lies_on_one_side(manifest):
 
 
 def test_the_hash_stands_for_the_content(manifest):
-    assert load_dataset(manifest).sha256 == load_dataset(manifest).sha256
+    assert load_dataset(manifest).sha256 == ShardedDataset(read_manifest(manifest)).sha256
     assert free_responses(seed=0).sha256 == free_responses(seed=0).sha256 != free_responses(seed=1).sha256
 
 
-def test_a_damaged_shard_is_never_trained_on(manifest):
+def test_shard_by_shard_it_is_the_same(manifest):
+    streamed, loaded = ShardedDataset(read_manifest(manifest)), load_dataset(manifest)
+    for part in ("training_blocks", "validation_blocks"):
+        blocks = list(getattr(streamed, part)())
+        assert len(blocks) == 3
+        ((x, dx),) = getattr(loaded, part)()
+        np.testing.assert_array_equal(np.concatenate([block[0] for block in blocks]), x)
+        np.testing.assert_array_equal(np.concatenate([block[1] for block in blocks]), dx)
+    for name in ("mean", "standard_deviation", "largest"):
+        np.testing.assert_allclose(getattr(streamed.scales, name), getattr(loaded.scales, name), rtol=1e-12)
+    assert (streamed.state_names, streamed.state_units) == (NAMES, UNITS)
+
+
+@pytest.mark.parametrize(
+    "read",
+    [load_dataset, lambda path: list(ShardedDataset(read_manifest(path)).training_blocks())],
+    ids=["loaded", "streamed"],
+)
+def test_a_damaged_shard_is_never_trained_on(manifest, read):
     shard = manifest.parent / "shard-2.parquet"
     content = bytearray(shard.read_bytes())
     content[len(content) // 2] ^= 1
     shard.write_bytes(content)
     with pytest.raises(StorageError, match=r"shard-2\.parquet"):
-        load_dataset(manifest)
+        read(manifest)

@@ -1,6 +1,5 @@
 """Polynomial port-Hamiltonian surrogates by linear least squares of inverse dynamics."""
 
-import tracemalloc
 from dataclasses import replace
 
 import numpy as np
@@ -14,11 +13,7 @@ from flexsurr.surrogates import PairScaling, PolynomialPortHamiltonian
 from flexsurr.surrogates.monomials import monomials_to_degree
 from flexsurr.surrogates.packed import pack
 from flexsurr.training import fit, nmse, split_dataset
-from flexsurr.training.inverse_dynamics import (
-    channel_spread,
-    fit_port_hamiltonian,
-    stream_port_hamiltonian,
-)
+from flexsurr.training.inverse_dynamics import channel_spread, fit_port_hamiltonian
 
 R = 2
 NAMES = tuple(f"{kind}_{k}" for kind in ("eta", "p") for k in range(R))
@@ -90,34 +85,12 @@ def test_an_oscillators_trajectories():
 
 
 def test_fed_in_pieces_it_is_the_same(monkeypatch):
-    truth = truth_of(2)
-    dataset = sampled(truth)
+    dataset = sampled(truth_of(2))
     expected = fit_port_hamiltonian(dataset, 4)
     monkeypatch.setattr("flexsurr.training.inverse_dynamics.CHUNK", 9_000)
-    blocks = zip(np.array_split(dataset.x_train, 7), np.array_split(dataset.dx_train, 7), strict=True)
-    spread = channel_spread(expected.scaling, dataset.scales)
-    found = stream_port_hamiltonian(blocks, 4, expected.scaling, spread, NAMES, ("1",) * 4)
+    monkeypatch.setattr("flexsurr.training.dataset.PIECE", 30)
+    found = fit_port_hamiltonian(dataset, 4)
     np.testing.assert_allclose(found.parameters, expected.parameters, atol=1e-11)
-
-
-def test_memory_does_not_grow_with_the_samples():
-    """Twenty blocks take what two take: one block and the triangle."""
-    truth = truth_of(3)
-    scaling, spread = truth.scaling, np.ones(4)
-
-    def peak(count):
-        def blocks():
-            for seed in range(count):
-                x = np.random.default_rng(seed).uniform(-1.0, 1.0, (300, 4)) * scaling.states(4)
-                yield x, truth.derivative(0.0, x)
-
-        tracemalloc.start()
-        stream_port_hamiltonian(blocks(), 4, scaling, spread, NAMES, ("1",) * 4)
-        _, most = tracemalloc.get_traced_memory()
-        tracemalloc.stop()
-        return most
-
-    assert peak(20) < 1.2 * peak(2)
 
 
 def test_a_mass_matrix_that_is_none_is_a_failure_with_a_reason(tmp_path):
