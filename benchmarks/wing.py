@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import yaml
@@ -15,6 +16,7 @@ from flexsurr.training import Dataset, split_dataset
 STRUCTURE = Structure(
     **yaml.safe_load((Path(__file__).parents[1] / "config/structures/wing.yaml").read_text())
 )
+Kind = Literal["modal", "joint"]
 SEED = 2024
 FIRST_OF_MANY, FRESH = 1000, 100_000  # numbers of trajectories that the study's own 50 do not use
 ACCURATE = Integrator(method="radau_iia_5", rtol=1e-9, atol=1e-11)
@@ -30,15 +32,15 @@ def wing_model(variant: Variant) -> CompiledModel:
     return reduced_order(basis(), variant, "compiled")
 
 
-def starts(first: int, count: int):
-    """Random initial states, drawn for unit-norm modes as the study has them."""
-    return draw_initial_conditions(basis(), InitialConditions(), SEED, first, count)
+def starts(first: int, count: int, kind: Kind = "modal"):
+    """Random initial states: drawn for unit-norm modes as the study has them, or for every joint."""
+    return draw_initial_conditions(basis(), InitialConditions(kind=kind), SEED, first, count)
 
 
-def free_responses(variant: Variant, first: int, count: int, t) -> Dataset:
+def free_responses(variant: Variant, kind: Kind, first: int, count: int, t) -> Dataset:
     """Samples at times t of free responses, every fifth of them to validate on."""
     model = wing_model(variant)
-    x = np.concatenate([simulate(model, t, start, ACCURATE).x for start in starts(first, count)])
+    x = np.concatenate([simulate(model, t, start, ACCURATE).x for start in starts(first, count, kind)])
     return split_dataset(
         np.repeat(np.arange(count), t.size),
         x,
@@ -49,10 +51,10 @@ def free_responses(variant: Variant, first: int, count: int, t) -> Dataset:
     )
 
 
-def datasets(variant: Variant) -> dict[str, Dataset]:
+def datasets(variant: Variant, kind: Kind = "modal") -> dict[str, Dataset]:
     """The study's 50 responses, and 1,000 others of five samples each, validated on all of the 50."""
-    fifty = free_responses(variant, 0, 50, np.linspace(0.0, 0.2, 201))
-    others = free_responses(variant, FIRST_OF_MANY, 1000, np.linspace(0.0, 0.2, 5))
+    fifty = free_responses(variant, kind, 0, 50, np.linspace(0.0, 0.2, 201))
+    others = free_responses(variant, kind, FIRST_OF_MANY, 1000, np.linspace(0.0, 0.2, 5))
     many = replace(
         others,
         x_train=np.concatenate([others.x_train, others.x_validation]),

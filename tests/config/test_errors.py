@@ -71,6 +71,12 @@ BAD_VALUES = [
     (STUDY, "dataset", 5, ["dataset", "5", "keys with values"]),
     (STUDY, "trains_on", {"default": "many"}, ["trains_on.default", "'many'", "allowed: default"]),
     (STUDY, "trains_on", {"other": "default"}, ["trains_on", "'other'", "allowed: default"]),
+    (
+        STUDY,
+        "evaluation.learned_load.dataset",
+        "many",
+        ["evaluation.learned_load.dataset", "'many'", "allowed: default"],
+    ),
     (STUDY, "further_datasets", {"many": {}}, ["further_datasets.many.seed", "2024", "another seed"]),
     (STUDY, "further_datasets", {"default": {"seed": 1}}, ["further_datasets", "'default'", "another name"]),
     (STUDY, "further_datasets", {"a b": {"seed": 1}}, ["further_datasets", "'a b'", "plain name"]),
