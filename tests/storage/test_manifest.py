@@ -1,4 +1,4 @@
-import tracemalloc
+import weakref
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from flexsurr.storage import (
     StorageError,
     build_manifest,
+    manifest,
     read_manifest,
     read_shard,
     read_shards,
@@ -141,16 +142,20 @@ def test_a_damaged_manifest_is_named(tmp_path, content):
         read_manifest(path)
 
 
-def test_memory_does_not_grow_with_the_number_of_shards(tmp_path, make_shard):
-    def peak(shards: int) -> int:
-        paths = [tmp_path / f"{shards}-{number:04d}.parquet" for number in range(shards)]
-        for number, path in enumerate(paths):
-            write_shard(path, make_shard(number, 1, samples=4000))
-        tracemalloc.start()
-        build(paths, trajectories=shards)
-        largest = tracemalloc.get_traced_memory()[1]
-        tracemalloc.stop()
-        return largest
+def test_only_the_last_shard_is_held_while_the_next_is_read(tmp_path, make_shard, monkeypatch):
+    paths = [tmp_path / f"shard-{number:04d}.parquet" for number in range(5)]
+    for number, path in enumerate(paths):
+        write_shard(path, make_shard(number, 1))
+    seen, alive = [], []
+    read_shard = manifest.read_shard
 
-    peak(2)
-    assert peak(24) < 1.5 * peak(3)
+    def counting(path):
+        alive.append(sum(reference() is not None for reference in seen))
+        shard = read_shard(path)
+        seen.extend(map(weakref.ref, (shard.x, shard.dx)))
+        return shard
+
+    monkeypatch.setattr(manifest, "read_shard", counting)
+    build(paths, trajectories=5)
+    assert len(alive) == 5
+    assert max(alive) <= 2  # x and dx of the last
