@@ -50,5 +50,5 @@ rule all:
             for study in STUDIES
             for name in plan.figures(study)
         ],
-        expand(f"{RESULTS}/tables/{{name}}.csv", name=TABLES),
+        rules.join.output,
         rules.airliner.input if AIRLINER else [],

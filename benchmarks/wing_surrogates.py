@@ -15,9 +15,8 @@ from wing import ACCURATE, FRESH, basis, datasets, starts, wing_model
 from flexsurr.beam import loaded
 from flexsurr.config.study import DistributedLoad, EvaluationSettings, Integrator, LearnedLoadSettings
 from flexsurr.config.sweep import Trial
-from flexsurr.evaluation import learn_forces
 from flexsurr.evaluation.cases import excitation
-from flexsurr.evaluation.learned_loads import exact_forces, relative_error
+from flexsurr.evaluation.learned_loads import exact_forces, learn_forces, relative_error
 from flexsurr.simulation import rhs, simulate
 from flexsurr.surrogates import LearnedLoad, compiled
 from flexsurr.training import fit

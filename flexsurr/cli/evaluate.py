@@ -9,7 +9,8 @@ from flexsurr.cli.selected import most_accurate, selected_surrogates
 from flexsurr.config.part import part_of
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Study
-from flexsurr.evaluation import cost_table, with_learned_loads
+from flexsurr.evaluation.contenders import with_learned_loads
+from flexsurr.evaluation.cost import cost_table
 from flexsurr.surrogates import load_map
 
 

@@ -4,14 +4,15 @@ from pathlib import Path
 
 from flexsurr.cli.command import Job, command
 from flexsurr.cli.products import arguments
-from flexsurr.report import FIGURES, save
+from flexsurr.report.catalogue import FIGURES
+from flexsurr.report.figures import DRAW
+from flexsurr.report.style import save
 
 
 def main(job: Job, inputs: list[Path], folder: Path) -> None:
     """Write the SVG and the PNG of each figure that the job names into `folder`."""
     for name in job["figures"]:
-        figure = FIGURES[name]
-        save(figure.make(*arguments(figure.reads, job, inputs)), folder / name)
+        save(DRAW[name](*arguments(FIGURES[name].reads, job, inputs)), folder / name)
 
 
 if __name__ == "__main__":

@@ -8,12 +8,13 @@ from flexsurr.cli.command import Job, command
 from flexsurr.cli.frames import write_frame
 
 
-def main(job: Job, inputs: list[Path], output: Path) -> None:
-    """Write the rows of `inputs`, in their order and to the letter, to `output`."""
-    # As text: a number that is read and written again may come out with other digits.
-    tables = [pd.read_csv(path, dtype=str, keep_default_na=False) for path in inputs]
-    write_frame(output, pd.concat(tables, ignore_index=True))
+def main(job: Job, inputs: list[Path], folder: Path) -> None:
+    """Write `inputs` of the same name below one another, to the letter, to that name in `folder`."""
+    for name in dict.fromkeys(path.name for path in inputs):
+        # As text: a number that is read and written again may come out with other digits.
+        tables = [pd.read_csv(path, dtype=str, keep_default_na=False) for path in inputs if path.name == name]
+        write_frame(folder / name, pd.concat(tables, ignore_index=True))
 
 
 if __name__ == "__main__":
-    command(main, {"inputs": "one table of each study …", "output": "all of them"})
+    command(main, {"inputs": "the tables of each study …", "folder": "where all of them go"})

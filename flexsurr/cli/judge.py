@@ -11,8 +11,9 @@ from flexsurr.cli.command import Job, command
 from flexsurr.config.part import part_of
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Study, Variant
-from flexsurr.evaluation import held_out_errors, long_response_errors, long_responses
 from flexsurr.evaluation.cases import Reference
+from flexsurr.evaluation.held_out import held_out_errors
+from flexsurr.evaluation.selection import long_response_errors, long_responses
 from flexsurr.storage import read_manifest, write_json
 from flexsurr.surrogates import load
 from flexsurr.training import Dataset, load_dataset

@@ -9,7 +9,7 @@ from flexsurr.cli.frames import write_frame
 from flexsurr.config.part import part_of
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Study
-from flexsurr.evaluation import learn_forces, learned_load_table
+from flexsurr.evaluation.learned_loads import learn_forces, learned_load_table
 from flexsurr.surrogates import save_map
 from flexsurr.training import load_dataset
 

@@ -1,4 +1,4 @@
-"""What a figure or a table reads: the files of its study, as its function's arguments."""
+"""What a figure or a table reads: the files of its study, as its function's arguments, and its caption."""
 
 import json
 from collections.abc import Sequence
@@ -18,6 +18,11 @@ def arguments(reads: Sequence[str], job: Job, inputs: Sequence[Path]) -> list[An
     Raises FileNotFoundError if no file fits one of `reads`.
     """
     return [_read(read, job, inputs) for read in reads]
+
+
+def text_of(caption: Path) -> str:
+    """What to see in a table, on one line."""
+    return " ".join(caption.read_text(encoding="utf-8").split())
 
 
 def _read(read: str, job: Job, inputs: Sequence[Path]) -> Any:

@@ -9,7 +9,8 @@ from flexsurr.cli.selected import selected_surrogates
 from flexsurr.config.part import part_of
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Study
-from flexsurr.evaluation import energy_table, response_table
+from flexsurr.evaluation.energy import energy_table
+from flexsurr.evaluation.responses import response_table
 
 
 def main(job: Job, selection: Path, runs: Path, free: Path, forced: Path, energy: Path) -> None:

@@ -10,7 +10,7 @@ from flexsurr.cli.frames import write_frame
 from flexsurr.config.part import part_of
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Study
-from flexsurr.evaluation import natural_frequencies, static_tip
+from flexsurr.evaluation.statics import natural_frequencies, static_tip
 
 
 def main(job: Job, statics: Path, frequencies: Path) -> None:

@@ -8,7 +8,7 @@ from flexsurr.cli.frames import write_frame
 from flexsurr.config.part import part_of
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Study
-from flexsurr.evaluation import validation_table
+from flexsurr.evaluation.validation import validation_table
 
 
 def main(job: Job, output: Path) -> None:

@@ -11,7 +11,8 @@ from flexsurr.config.flight import FlightCondition
 from flexsurr.config.study import Integrator
 from flexsurr.evaluation.airliner_flights import MOVED, Flight, flown, limit_exceedances, peak_errors
 from flexsurr.evaluation.airliner_models import ONE_MACH, REFERENCE, Airliner
-from flexsurr.evaluation.ratios import COST_COLUMNS, relative_percent
+from flexsurr.evaluation.columns import COST_COLUMNS
+from flexsurr.evaluation.ratios import relative_percent
 from flexsurr.evaluation.timing import wall_time
 from flexsurr.flight.trim import Trim, TrimNotFound, trim
 from flexsurr.simulation.mapping import CompiledMapping

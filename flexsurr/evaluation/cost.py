@@ -12,10 +12,11 @@ from flexsurr.beam import ModalBasis, reduced_order
 from flexsurr.config.study import EvaluationSettings, Integrator, Study, Variant
 from flexsurr.evaluation.accuracy import tip_error
 from flexsurr.evaluation.cases import Reference, Response, evaluation_cases, reference_solutions, sample_times
+from flexsurr.evaluation.columns import COST_COLUMNS
 from flexsurr.evaluation.contenders import Contender, contenders
 from flexsurr.evaluation.energy import drift_percent, energy_error_percent
 from flexsurr.evaluation.published import beside
-from flexsurr.evaluation.ratios import COST_COLUMNS, PAPERS_INTEGRATOR, summary
+from flexsurr.evaluation.ratios import PAPERS_INTEGRATOR, summary
 from flexsurr.evaluation.timing import one_thread, wall_time
 from flexsurr.simulation import Trajectory, simulate
 from flexsurr.simulation.rhs import Array, Model

@@ -12,28 +12,6 @@ SETUP = ["model", "implementation", "integrator"]
 
 BASELINES = ("described", "numpy", "compiled")
 
-# Those of cost.csv, which others read.
-COST_COLUMNS = (
-    "study",
-    "variant",
-    "response",
-    "model",
-    "implementation",
-    "integrator",
-    "simulations",
-    "wall_s_mean",
-    "wall_s_std",
-    "relative_to_described_percent",
-    "relative_to_described_std_percent",
-    "relative_to_numpy_percent",
-    "relative_to_compiled_percent",
-    "paper_percent",
-    "paper_std_percent",
-    "tip_error_percent",
-    "energy_drift_percent",
-    "diverged",
-)
-
 
 def summary(measurements: pd.DataFrame) -> pd.DataFrame:
     """One row per model × implementation × integrator, in order of appearance.

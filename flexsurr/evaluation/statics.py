@@ -16,18 +16,9 @@ from flexsurr.beam import (
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Study
 from flexsurr.evaluation.cases import rest_state
+from flexsurr.evaluation.columns import FREQUENCY_COLUMNS, STATIC_COLUMNS
 from flexsurr.evaluation.published import FREQUENCIES_RAD_S
 from flexsurr.simulation.rhs import Array
-
-STATIC_COLUMNS = ("load_N", "x_exact_m", "z_exact_m", "x_fom_m", "z_fom_m", "x_rom_m", "z_rom_m")
-FREQUENCY_COLUMNS = (
-    "structure",
-    "mode",
-    "fom_rad_s",
-    "rom_rad_s",
-    "published_fom_rad_s",
-    "published_rom_rad_s",
-)
 
 
 def static_tip(study: Study, basis: ModalBasis) -> pd.DataFrame:

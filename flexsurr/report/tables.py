@@ -1,13 +1,14 @@
 """The tables: data frames whose columns are a contract, their files, and a page to read each on."""
 
 import html
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import pandas as pd
 
-from flexsurr.evaluation.ratios import COST_COLUMNS
-from flexsurr.evaluation.statics import FREQUENCY_COLUMNS, STATIC_COLUMNS
+from flexsurr.evaluation.columns import COST_COLUMNS, FREQUENCY_COLUMNS, STATIC_COLUMNS
+from flexsurr.report.architectures import architectures
+from flexsurr.report.seeds import seeds
 from flexsurr.storage import replacing
 
 TRAINING_COLUMNS = (
@@ -23,7 +24,6 @@ TRAINING_COLUMNS = (
     "train_nmse",
     "validation_nmse",
 )
-
 
 LEARNED_LOAD_COLUMNS = (
     "study",
@@ -61,6 +61,13 @@ def cost(costs: pd.DataFrame) -> pd.DataFrame:
 def learned_loads(errors: pd.DataFrame) -> pd.DataFrame:
     """learned_loads.csv: what the maps of a learned load err by."""
     return _columns(errors, LEARNED_LOAD_COLUMNS)
+
+
+TABULATE: dict[str, Callable[[pd.DataFrame], pd.DataFrame]] = {
+    tabulate.__name__: tabulate
+    for tabulate in (static_tip, natural_frequencies, training, architectures, seeds, cost, learned_loads)
+}
+"""The functions that make the tables of the catalogue, by their names."""
 
 
 def save_table(frame: pd.DataFrame, path: Path) -> None:

@@ -1,16 +1,20 @@
-"""From datasets to fitted surrogates: optimisers, sweeps, selection."""
+"""From datasets to fitted surrogates: optimisers, sweeps, selection.
 
+A name is imported when it is asked for: the kernels take seconds that planning a sweep does not need, and
+torch takes seconds that nothing else here needs.
+"""
+
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from flexsurr.training.dataset import Dataset, ShardedDataset, load_dataset, split_dataset
-from flexsurr.training.fitting import Fit, fit
-from flexsurr.training.learned_maps import fit_network_map, fit_polynomial_map
-from flexsurr.training.losses import nmse, nmse_per_state
-from flexsurr.training.selection import select
-from flexsurr.training.sweep import expand, run_id
-
 if TYPE_CHECKING:
+    from flexsurr.training.dataset import Dataset, ShardedDataset, load_dataset, split_dataset
+    from flexsurr.training.fitting import Fit, fit
+    from flexsurr.training.learned_maps import fit_network_map, fit_polynomial_map
+    from flexsurr.training.losses import nmse, nmse_per_state
     from flexsurr.training.networks import torch_model
+    from flexsurr.training.selection import select
+    from flexsurr.training.sweep import expand, run_id
 
 __all__ = [
     "Dataset",
@@ -29,11 +33,25 @@ __all__ = [
     "torch_model",
 ]
 
+_MODULES = {
+    "Dataset": "dataset",
+    "Fit": "fitting",
+    "ShardedDataset": "dataset",
+    "expand": "sweep",
+    "fit": "fitting",
+    "fit_network_map": "learned_maps",
+    "fit_polynomial_map": "learned_maps",
+    "load_dataset": "dataset",
+    "nmse": "losses",
+    "nmse_per_state": "losses",
+    "run_id": "sweep",
+    "select": "selection",
+    "split_dataset": "dataset",
+    "torch_model": "networks",
+}
+
 
 def __getattr__(name: str) -> Any:
-    """`torch_model` when it is asked for: importing torch takes seconds that nothing else here needs."""
-    if name != "torch_model":
+    if name not in _MODULES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from flexsurr.training.networks import torch_model
-
-    return torch_model
+    return getattr(import_module(f"{__name__}.{_MODULES[name]}"), name)

@@ -18,7 +18,7 @@ from flexsurr.config.part import values_of
 from flexsurr.config.settings import Configuration, ResolvedStudy
 from flexsurr.config.study import DEFAULT, Study, Variant
 from flexsurr.config.sweep import Trial
-from flexsurr.report import FIGURES
+from flexsurr.report.catalogue import FIGURES
 from flexsurr.training.sweep import expand, run_id
 
 Job = dict[str, Any]
@@ -220,7 +220,7 @@ class Plan:
         return data_folder(variant, self.studies[study].study.evaluation.learned_load.dataset)
 
     def files(self, study: str, read: str) -> list[str]:
-        """The files below the results that hold what a figure or table `read`s (flexsurr.report)."""
+        """The files below the results that hold what a product of flexsurr.report `read`s."""
         runs = {"metrics": "metrics.json", "history": "history.parquet"}
         if read == "structure":
             return []

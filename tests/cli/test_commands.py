@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from flexsurr.cli import page
+from flexsurr.cli import join, pages
 from flexsurr.config.settings import load
 from flexsurr.storage import read_shard
 from flexsurr.workflow.plan import Plan
@@ -108,10 +108,36 @@ def test_simulating_needs_neither_torch_nor_mlflow_nor_matplotlib():
     assert done.stdout.strip() == "set()", done.stderr
 
 
-def test_a_table_becomes_a_page_with_title_and_caption(tmp_path):
+@pytest.mark.parametrize("module", ["cli.tables", "cli.join", "cli.pages", "workflow.plan"])
+def test_tables_and_plans_need_neither_kernels_nor_figures(module):
+    heavy = {"numba", "scipy", "matplotlib", "torch", "mlflow"}
+    code = f"import sys, flexsurr.{module}; print({heavy} & set(sys.modules))"
+    done = subprocess.run([sys.executable, "-c", code], cwd=REPOSITORY, capture_output=True, text=True)
+    assert done.stdout.strip() == "set()", done.stderr
+
+
+def test_tables_become_pages_with_title_and_caption(tmp_path):
     (tmp_path / "limits.csv").write_text("input,beyond\nalpha,0.25\n")
     (tmp_path / "limits.rst").write_text("What to\nsee in it.\n")
-    page.main({"title": "Limits"}, tmp_path / "limits.csv", tmp_path / "limits.rst", tmp_path / "limits.html")
-    text = (tmp_path / "limits.html").read_text()
+    (tmp_path / "modes.csv").write_text("mode\n1\n")
+    (tmp_path / "modes.rst").write_text("Which modes.\n")
+    tables = [tmp_path / "limits.csv", tmp_path / "modes.csv"]
+    captions = [table.with_suffix(".rst") for table in tables]
+    pages.main({"titles": ["Limits", "Modes"]}, tables, captions, tmp_path / "pages")
+    limits = (tmp_path / "pages" / "limits.html").read_text()
     for part in ("<h1>Limits</h1>", "What to see in it.", "<td>alpha</td>", '<td class="number">0.25</td>'):
-        assert part in text
+        assert part in limits
+    modes = (tmp_path / "pages" / "modes.html").read_text()
+    assert "<h1>Modes</h1>" in modes
+    assert "Which modes." in modes
+
+
+def test_tables_of_one_name_are_joined_to_the_letter(tmp_path):
+    for study, cost in (("beam", "0.10"), ("wing", "1e-07")):
+        (tmp_path / study).mkdir()
+        (tmp_path / study / "cost.csv").write_text(f"study,wall_s\n{study},{cost}\n")
+        (tmp_path / study / "runs.csv").write_text(f"study\n{study}\n")
+    inputs = [tmp_path / study / f"{name}.csv" for name in ("cost", "runs") for study in ("beam", "wing")]
+    join.main({}, inputs, tmp_path)
+    assert (tmp_path / "cost.csv").read_text() == "study,wall_s\nbeam,0.10\nwing,1e-07\n"
+    assert (tmp_path / "runs.csv").read_text() == "study\nbeam\nwing\n"

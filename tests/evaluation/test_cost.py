@@ -4,10 +4,10 @@ import logging
 
 import pytest
 
-from flexsurr.evaluation import cost_table
+from flexsurr.evaluation.columns import COST_COLUMNS
 from flexsurr.evaluation.contenders import contenders
-from flexsurr.evaluation.cost import setups
-from flexsurr.evaluation.ratios import COST_COLUMNS, PAPERS_INTEGRATOR
+from flexsurr.evaluation.cost import cost_table, setups
+from flexsurr.evaluation.ratios import PAPERS_INTEGRATOR
 
 DOP853, RK4 = "dop853(rtol=1e-07,atol=1e-09)", "rk4(h=0.001)"
 

@@ -12,8 +12,9 @@ from flexsurr.config.study import (
     Integrator,
     Reduction,
 )
-from flexsurr.evaluation import dissipative_asymmetry, energy_balance
 from flexsurr.evaluation.cases import excitation
+from flexsurr.evaluation.dissipative_structure import dissipative_asymmetry
+from flexsurr.evaluation.energy_balance import energy_balance
 from flexsurr.simulation import simulate
 
 WING = Structure(

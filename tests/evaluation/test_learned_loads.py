@@ -13,9 +13,16 @@ from flexsurr.config.study import (
     LearnedLoadSettings,
     Reduction,
 )
-from flexsurr.evaluation import cost_table, learn_forces, learned_load_table, with_learned_loads
 from flexsurr.evaluation.cases import evaluation_cases, excitation
-from flexsurr.evaluation.learned_loads import exact_forces, learn_kinematics, relative_error
+from flexsurr.evaluation.contenders import with_learned_loads
+from flexsurr.evaluation.cost import cost_table
+from flexsurr.evaluation.learned_loads import (
+    exact_forces,
+    learn_forces,
+    learn_kinematics,
+    learned_load_table,
+    relative_error,
+)
 from flexsurr.simulation import simulate
 
 TWISTED = Structure(

@@ -2,9 +2,9 @@
 
 import pytest
 
-from flexsurr.evaluation import long_response_errors, long_responses, response_table, validation_table
-from flexsurr.evaluation.responses import RESPONSE_COLUMNS
-from flexsurr.evaluation.validation import VALIDATION_COLUMNS
+from flexsurr.evaluation.responses import RESPONSE_COLUMNS, response_table
+from flexsurr.evaluation.selection import long_response_errors, long_responses
+from flexsurr.evaluation.validation import VALIDATION_COLUMNS, validation_table
 
 
 @pytest.mark.parametrize("response", ["free", "forced"])

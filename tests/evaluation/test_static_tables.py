@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from flexsurr.beam import reduce
-from flexsurr.evaluation import natural_frequencies, static_tip
 from flexsurr.evaluation.published import FREQUENCIES_RAD_S
+from flexsurr.evaluation.statics import natural_frequencies, static_tip
 
 
 def test_unloaded_the_beam_is_straight_and_loads_ascend(study, basis):

@@ -9,7 +9,7 @@ from flexsurr.beam import reduce
 from flexsurr.config.reading import read_yaml
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Reduction
-from flexsurr.evaluation import natural_frequencies
+from flexsurr.evaluation.statics import natural_frequencies
 
 STRUCTURES = Path(__file__).resolve().parents[2] / "config" / "structures"
 

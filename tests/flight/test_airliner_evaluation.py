@@ -24,7 +24,7 @@ from flexsurr.evaluation.airliner_flights import (
 )
 from flexsurr.evaluation.airliner_models import REFERENCE, Airliner
 from flexsurr.evaluation.airliner_modes import MODE_COLUMNS, airliner_modes, left_out_modes
-from flexsurr.evaluation.ratios import COST_COLUMNS
+from flexsurr.evaluation.columns import COST_COLUMNS
 from flexsurr.flight.airliner import flexible_airframe
 from flexsurr.flight.linear_aerodynamics import linear_aerodynamics
 from flexsurr.flight.trim import trim

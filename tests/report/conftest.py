@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from flexsurr.config.structure import Structure
-from flexsurr.evaluation.ratios import COST_COLUMNS
+from flexsurr.evaluation.columns import COST_COLUMNS
 
 VARIANTS = ("hamiltonian", "as_printed")
 MODELS = ("mlp", "hnn", "polynomial")

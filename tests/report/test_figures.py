@@ -6,7 +6,10 @@ import matplotlib
 import pytest
 from matplotlib.figure import Figure
 
-from flexsurr.report import FIGURES, save
+from flexsurr.report.catalogue import FIGURES
+from flexsurr.report.cost_figures import pareto_front
+from flexsurr.report.figures import DRAW
+from flexsurr.report.style import save
 
 # The fixture that stands for each thing a figure may read.
 FIXTURES = {
@@ -31,9 +34,8 @@ DRAWN: dict[str, Figure] = {}
 
 
 def draw(name, request):
-    product = FIGURES[name]
-    fixtures = [OF_DAMPED.get(name, FIXTURES[read]) for read in product.reads]
-    return product.make(*map(request.getfixturevalue, fixtures))
+    fixtures = [OF_DAMPED.get(name, FIXTURES[read]) for read in FIGURES[name].reads]
+    return DRAW[name](*map(request.getfixturevalue, fixtures))
 
 
 @pytest.fixture
@@ -42,6 +44,10 @@ def figure(name, request):
     if name not in DRAWN:
         DRAWN[name] = draw(name, request)
     return DRAWN[name]
+
+
+def test_every_figure_of_the_catalogue_is_drawn_and_no_other():
+    assert set(DRAW) == set(FIGURES)
 
 
 @pytest.mark.parametrize("name", FIGURES)
@@ -90,15 +96,12 @@ RESPONSES = ["figure_09", "figure_10", "figure_12", "figure_13", "figure_14", "f
 
 @pytest.mark.parametrize("name", [*RESPONSES, "cost_accuracy", "architecture_errors"])
 def test_a_study_of_one_variant_is_drawn_too(name, request):
-    product = FIGURES[name]
-    frame = request.getfixturevalue(OF_DAMPED.get(name, FIXTURES[product.reads[0]]))
-    figure = product.make(frame[frame["variant"] == "as_printed"])
+    frame = request.getfixturevalue(OF_DAMPED.get(name, FIXTURES[FIGURES[name].reads[0]]))
+    figure = DRAW[name](frame[frame["variant"] == "as_printed"])
     assert all(ax.has_data() for ax in figure.axes)
 
 
 def test_the_whole_pareto_front_is_labelled(request):
-    from flexsurr.report.cost_figures import pareto_front
-
     cost = request.getfixturevalue("cost")
     panel = cost[(cost["variant"] == "hamiltonian") & (cost["response"] == "free")]
     written = " ".join(text.get_text() for text in draw("cost_accuracy", request).axes[0].texts)
@@ -124,12 +127,12 @@ def test_what_only_damped_structures_have_is_drawn_of_them_alone(structure):
 def test_a_model_that_leaves_does_not_set_the_scale(request):
     response = request.getfixturevalue("free")
     response.loc[response["model"] == "hnn", ["tip_z_m", "tip_twist_rad"]] *= 1e3
-    figure = FIGURES["figure_14"].make(response)
+    figure = DRAW["figure_14"](response)
     assert figure.axes[0].get_ylim()[1] < 1.0
 
 
 def test_runs_without_an_end_stand_on_the_line_and_failed_ones_nowhere(request):
-    figure = FIGURES["architecture_errors"].make(request.getfixturevalue("relatives"))
+    figure = DRAW["architecture_errors"](request.getfixturevalue("relatives"))
     heights = [line.get_ydata()[0] for line in figure.axes[0].lines]
     # the line itself and the one run that did not end
     assert heights.count(1e3) == 2

@@ -3,8 +3,9 @@
 import pandas as pd
 import pytest
 
-from flexsurr.report import TABLES, save_page, save_table
+from flexsurr.report.catalogue import TABLES
 from flexsurr.report.cost_figures import pareto_front
+from flexsurr.report.tables import TABULATE, save_page, save_table
 
 CONTRACT = {
     "static_tip": "load_N, x_exact_m, z_exact_m, x_fom_m, z_fom_m, x_rom_m, z_rom_m",
@@ -63,29 +64,33 @@ def frames(statics, metrics, cost, relatives):
     }
 
 
+def test_every_table_of_the_catalogue_is_made_and_no_other():
+    assert set(TABULATE) == set(TABLES)
+
+
 @pytest.mark.parametrize("name", TABLES)
 def test_columns_are_those_of_the_contract(name, frames):
     # more columns in, shuffled: exactly the contract's out, in its order
     frame = frames[name].assign(surplus=1.0).iloc[:, ::-1]
-    assert ", ".join(TABLES[name].make(frame).columns) == CONTRACT[name]
+    assert ", ".join(TABULATE[name](frame).columns) == CONTRACT[name]
 
 
 @pytest.mark.parametrize("name", TABLES)
 def test_a_missing_column_is_named(name, frames):
     column = CONTRACT[name].split(", ")[1]
     with pytest.raises(KeyError, match=column):
-        TABLES[name].make(frames[name].drop(columns=column))
+        TABULATE[name](frames[name].drop(columns=column))
 
 
 def test_failed_runs_stay_in_the_table_of_training(frames):
-    made = TABLES["training"].make(frames["training"])
+    made = TABULATE["training"](frames["training"])
     assert len(made) == len(frames["training"])
     assert made["validation_nmse"].isna().sum() == 1
 
 
 @pytest.mark.parametrize("name", TABLES)
 def test_csv_and_page_hold_every_row(name, frames, tmp_path):
-    made = TABLES[name].make(frames[name])
+    made = TABULATE[name](frames[name])
     save_table(made, tmp_path / "table.csv")
     save_page(made, "A < B", "What each row is & why.", tmp_path / "table.html")
     back = pd.read_csv(tmp_path / "table.csv")
@@ -101,7 +106,7 @@ def test_csv_and_page_hold_every_row(name, frames, tmp_path):
 
 
 def test_unknown_numbers_are_empty_cells(frames, tmp_path):
-    save_page(TABLES["cost"].make(frames["cost"]), "Cost", "", tmp_path / "cost.html")
+    save_page(TABULATE["cost"](frames["cost"]), "Cost", "", tmp_path / "cost.html")
     page = (tmp_path / "cost.html").read_text(encoding="utf-8")
     assert "nan" not in page.lower()
 
@@ -123,7 +128,7 @@ def test_nothing_beats_a_row_of_the_pareto_front(cost):
 
 
 def test_failed_runs_stay_in_the_table_of_architectures(relatives):
-    table = TABLES["architectures"].make(relatives)
+    table = TABULATE["architectures"](relatives)
     assert len(table) == len(relatives)
     failed = table[table["status"] == "failed"].iloc[0]
     assert failed[["held_out_nmse", "held_out_nmse_eta_1"]].isna().all()

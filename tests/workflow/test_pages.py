@@ -19,7 +19,7 @@ from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.by import By
 from selenium.webdriver.support.ui import WebDriverWait
 
-from flexsurr.report import FIGURES, TABLES, damped
+from flexsurr.report.catalogue import FIGURES, TABLES, damped
 from flexsurr.training.tracking import RUN_KEY, store_uri
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")

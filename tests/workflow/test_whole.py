@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from flexsurr.report import TABLES
+from flexsurr.report.catalogue import TABLES
 from flexsurr.storage import read_manifest, read_shards
 from flexsurr.workflow.airliner_plan import AirlinerPlan
 

@@ -102,37 +102,40 @@ rule draw_airliner:
         " --doublets {input.doublets:q} --folder {params.folder:q} > {log:q} 2>&1"
 
 
-for name, title in AIRLINER_TABLES.items():
-
-    rule:
-        name:
-            f"show_{name}"
-        input:
-            csv=f"{RESULTS}/tables/{name}.csv",
-            caption=os.path.relpath(f"{workflow.basedir}/workflow/report/{name}.rst"),
-        output:
+rule show_airliner:
+    input:
+        tables=expand(f"{RESULTS}/tables/{{name}}.csv", name=AIRLINER_TABLES),
+        captions=[
+            os.path.relpath(f"{workflow.basedir}/workflow/report/{name}.rst")
+            for name in AIRLINER_TABLES
+        ],
+    output:
+        *(
             report(
                 f"{RESULTS}/tables/airliner/{name}.html",
                 caption=f"../report/{name}.rst",
                 category="airliner",
                 subcategory="tables",
-                labels={"table": name, "shows": title},
-            ),
-        log:
-            f"{RESULTS}/logs/tables/{name}.log",
-        params:
-            job=json.dumps({"title": title}),
-            code=code("page"),
-        message:
-            f"a page of {name}"
-        shell:
-            "python -m flexsurr.cli.page --job {params.job:q} --csv {input.csv:q}"
-            " --caption {input.caption:q} --page {output:q} > {log:q} 2>&1"
+                labels={"table": name, "shows": AIRLINER_TABLES[name]},
+            )
+            for name in AIRLINER_TABLES
+        ),
+    log:
+        f"{RESULTS}/logs/tables/airliner.log",
+    params:
+        job=json.dumps({"titles": list(AIRLINER_TABLES.values())}),
+        code=code("pages"),
+        folder=f"{RESULTS}/tables/airliner",
+    message:
+        "pages of the airliner's tables"
+    shell:
+        "python -m flexsurr.cli.pages --job {params.job:q} --tables {input.tables:q}"
+        " --captions {input.captions:q} --folder {params.folder:q} > {log:q} 2>&1"
 
 
 rule airliner:
     # Everything of the airliner.
     input:
         rules.draw_airliner.output,
-        expand(f"{RESULTS}/tables/airliner/{{name}}.html", name=AIRLINER_TABLES),
+        rules.show_airliner.output,
         rules.fly_randomly.output.rows,

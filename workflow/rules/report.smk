@@ -1,11 +1,11 @@
 # Figures and tables, each with a caption that says what to see.
 
-from flexsurr.report import FIGURES, TABLES
+from flexsurr.report.catalogue import FIGURES, TABLES, by_reads
 
 for study in STUDIES:
-    drawn = {name: FIGURES[name].reads for name in plan.figures(study)}
-    for reads in dict.fromkeys(drawn.values()):
-        same = [name for name, read in drawn.items() if read == reads]
+    for reads, same in by_reads(
+        {name: FIGURES[name] for name in plan.figures(study)}
+    ).items():
 
         rule:
             name:
@@ -40,61 +40,60 @@ for study in STUDIES:
                 "python -m flexsurr.cli.figures --job {params.job:q} --inputs {input:q}"
                 " --folder {params.folder:q} > {log:q} 2>&1"
 
-
-for table in TABLES:
-    for study in STUDIES:
+    for reads, same in by_reads(TABLES).items():
 
         rule:
             name:
-                f"tabulate_{study}_{table}"
+                f"tabulate_{study}_{'_'.join(same)}"
             input:
                 files=[
                     f"{RESULTS}/{file}"
-                    for read in TABLES[table].reads
+                    for read in reads
                     for file in plan.files(study, read)
                 ],
-                caption=os.path.relpath(
-                    f"{workflow.basedir}/workflow/report/{table}.rst"
-                ),
+                captions=[
+                    os.path.relpath(f"{workflow.basedir}/workflow/report/{name}.rst")
+                    for name in same
+                ],
             output:
-                csv=f"{RESULTS}/tables/{study}/{table}.csv",
-                page=report(
-                    f"{RESULTS}/tables/{study}/{table}.html",
-                    caption=f"../report/{table}.rst",
-                    category=study,
-                    subcategory="tables",
-                    labels={"table": table, "shows": TABLES[table].title},
+                expand(f"{RESULTS}/tables/{study}/{{name}}.csv", name=same),
+                *(
+                    report(
+                        f"{RESULTS}/tables/{study}/{name}.html",
+                        caption=f"../report/{name}.rst",
+                        category=study,
+                        subcategory="tables",
+                        labels={"table": name, "shows": TABLES[name].title},
+                    )
+                    for name in same
                 ),
             log:
-                f"{RESULTS}/logs/tables/{study}-{table}.log",
+                f"{RESULTS}/logs/tables/{study}-{'-'.join(same)}.log",
             params:
-                job=json.dumps({"table": table}),
-                code=code("table"),
+                job=json.dumps({"tables": same}),
+                code=code("tables"),
+                folder=f"{RESULTS}/tables/{study}",
             message:
-                f"tabulating {table} of {study}"
+                f"tabulating {', '.join(same)} of {study}"
             shell:
-                "python -m flexsurr.cli.table --job {params.job:q} --inputs {input.files:q}"
-                " --caption {input.caption:q} --csv {output.csv:q} --page {output.page:q} > {log:q} 2>&1"
+                "python -m flexsurr.cli.tables --job {params.job:q} --inputs {input.files:q}"
+                " --captions {input.captions:q} --folder {params.folder:q} > {log:q} 2>&1"
 
-    rule:
-        name:
-            f"join_{table}"
-        input:
-            expand(
-                f"{RESULTS}/tables/{{study}}/{table}.csv",
-                study=(
-                    [*STUDIES, "airliner"] if table == "cost" and AIRLINER else STUDIES
-                ),
-            ),
-        output:
-            f"{RESULTS}/tables/{table}.csv",
-        log:
-            f"{RESULTS}/logs/tables/{table}.log",
-        params:
-            job="{}",
-            code=code("join"),
-        message:
-            f"joining {table} of all studies"
-        shell:
-            "python -m flexsurr.cli.join --job {params.job:q} --inputs {input:q} --output {output:q}"
-            " > {log:q} 2>&1"
+
+rule join:
+    input:
+        expand(f"{RESULTS}/tables/{{study}}/{{name}}.csv", study=STUDIES, name=TABLES),
+        f"{RESULTS}/tables/airliner/cost.csv" if AIRLINER else [],
+    output:
+        expand(f"{RESULTS}/tables/{{name}}.csv", name=TABLES),
+    log:
+        f"{RESULTS}/logs/tables/join.log",
+    params:
+        job="{}",
+        code=code("join"),
+        folder=f"{RESULTS}/tables",
+    message:
+        "joining the tables of all studies"
+    shell:
+        "python -m flexsurr.cli.join --job {params.job:q} --inputs {input:q} --folder {params.folder:q}"
+        " > {log:q} 2>&1"

@@ -1,0 +1,31 @@
+"""Columns of the tables that others read. Naming them imports nothing that fills them."""
+
+STATIC_COLUMNS = ("load_N", "x_exact_m", "z_exact_m", "x_fom_m", "z_fom_m", "x_rom_m", "z_rom_m")
+FREQUENCY_COLUMNS = (
+    "structure",
+    "mode",
+    "fom_rad_s",
+    "rom_rad_s",
+    "published_fom_rad_s",
+    "published_rom_rad_s",
+)
+COST_COLUMNS = (
+    "study",
+    "variant",
+    "response",
+    "model",
+    "implementation",
+    "integrator",
+    "simulations",
+    "wall_s_mean",
+    "wall_s_std",
+    "relative_to_described_percent",
+    "relative_to_described_std_percent",
+    "relative_to_numpy_percent",
+    "relative_to_compiled_percent",
+    "paper_percent",
+    "paper_std_percent",
+    "tip_error_percent",
+    "energy_drift_percent",
+    "diverged",
+)

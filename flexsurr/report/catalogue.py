@@ -1,0 +1,82 @@
+"""What figures and tables there are, and what each reads. Planning them imports nothing that makes them.
+
+A product says what it `reads`, in the order of its function's arguments:
+
+| read | is |
+|---|---|
+| structure | the study's `Structure` |
+| metrics | one row for each run of the study: its metrics.json |
+| relatives | the same of every study of the same structure |
+| history | all runs' history.parquet, with a column run_id |
+| anything else | results/evaluation/<study>/<it>.parquet; a * stands for every file that fits, concatenated |
+
+A figure may show what only some structures have: `Product.shows` says of which it is made.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from flexsurr.config.structure import Structure
+
+
+def any_structure(structure: Structure) -> bool:
+    """True."""
+    return True
+
+
+def conservative(structure: Structure) -> bool:
+    """Whether nothing of the structure is damped."""
+    return not structure.dissipates
+
+
+def damped(structure: Structure) -> bool:
+    """Whether something of the structure is damped."""
+    return structure.dissipates
+
+
+@dataclass(frozen=True)
+class Product:
+    """A figure or a table: its title, what its function reads, and of which structures it is made."""
+
+    title: str
+    reads: tuple[str, ...] = ()
+    shows: Callable[[Structure], bool] = any_structure
+
+
+FIGURES: dict[str, Product] = {
+    "figure_03": Product("Discretisation", ("structure",)),
+    "figure_04": Product("Frames and position vectors", ("structure",)),
+    "figure_05": Product("Multilayer perceptron"),
+    "figure_06": Product("Hamiltonian neural network", shows=conservative),
+    "figure_07": Product("Dissipative Hamiltonian neural network", shows=damped),
+    "figure_08": Product("Tip under static loads", ("statics",)),
+    "figure_09": Product("Tip under a harmonic load", ("validation",)),
+    "figure_10": Product("Free response", ("response-*-free",), conservative),
+    "figure_11": Product("Augmented surrogate"),
+    "figure_12": Product("Forced response", ("response-*-forced",), conservative),
+    "figure_13": Product("Total energy", ("energy-*",), conservative),
+    "figure_14": Product("Free response", ("response-*-free",), damped),
+    "figure_15": Product("Forced response", ("response-*-forced",), damped),
+    "energy_decay": Product("Total energy", ("energy-*",), damped),
+    "architecture_errors": Product("Errors by architecture", ("relatives",), damped),
+    "cost_accuracy": Product("Cost against accuracy", ("cost-*-*",)),
+    "training_loss": Product("Training loss against wall time", ("history", "metrics")),
+}
+
+TABLES: dict[str, Product] = {
+    "static_tip": Product("Tip under static loads", ("statics",)),
+    "natural_frequencies": Product("Natural frequencies", ("frequencies",)),
+    "training": Product("Training runs", ("metrics",)),
+    "architectures": Product("Every architecture in every setting", ("metrics",)),
+    "seeds": Product("Mean and spread over seeds", ("metrics",)),
+    "cost": Product("Cost and accuracy", ("cost-*-*",)),
+    "learned_loads": Product("Learned loads", ("learned_loads-*",)),
+}
+
+
+def by_reads(products: Mapping[str, Product]) -> dict[tuple[str, ...], list[str]]:
+    """The names of the products that read the same, by what they read."""
+    names: dict[tuple[str, ...], list[str]] = {}
+    for name, product in products.items():
+        names.setdefault(product.reads, []).append(name)
+    return names

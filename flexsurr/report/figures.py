@@ -1,0 +1,38 @@
+"""The functions that draw the figures of the catalogue, by their names."""
+
+from collections.abc import Callable
+
+from matplotlib.figure import Figure
+
+from flexsurr.report.architecture_figures import architecture_errors
+from flexsurr.report.beam_figures import figure_08, figure_09
+from flexsurr.report.cost_figures import cost_accuracy
+from flexsurr.report.damped_figures import energy_decay, figure_14, figure_15
+from flexsurr.report.energy_figures import figure_13
+from flexsurr.report.kinematic_figures import figure_03, figure_04
+from flexsurr.report.response_figures import figure_10, figure_12
+from flexsurr.report.schematics import figure_05, figure_06, figure_07, figure_11
+from flexsurr.report.training_figures import training_loss
+
+DRAW: dict[str, Callable[..., Figure]] = {
+    draw.__name__: draw
+    for draw in (
+        figure_03,
+        figure_04,
+        figure_05,
+        figure_06,
+        figure_07,
+        figure_08,
+        figure_09,
+        figure_10,
+        figure_11,
+        figure_12,
+        figure_13,
+        figure_14,
+        figure_15,
+        energy_decay,
+        architecture_errors,
+        cost_accuracy,
+        training_loss,
+    )
+}
