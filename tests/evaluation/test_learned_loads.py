@@ -9,7 +9,6 @@ from flexsurr.config.structure import Structure
 from flexsurr.config.study import (
     DistributedLoad,
     EvaluationSettings,
-    Integrator,
     LearnedLoadSettings,
     Reduction,
 )
@@ -112,7 +111,7 @@ def test_a_surrogate_under_it_follows_the_one_under_the_exact_load(study, basis,
     ]
     case = evaluation_cases(basis, study, "forced")[0]
     t = np.linspace(0.0, 0.3, 31)
-    tight = Integrator(method="dop853", rtol=1e-7, atol=1e-9)
+    tight = study.evaluation.reference_integrator
     exact = loaded(contenders[0].field, basis, case.load, "compiled")
     expected = simulate(exact, t, case.x0, tight).x
     assert np.abs(expected[:, 0]).max() > 0.01
