@@ -3,10 +3,9 @@
 import json
 from pathlib import Path
 
-import pandas as pd
-
 from flexsurr.cli.command import Job, command
 from flexsurr.cli.flying import airliner_of
+from flexsurr.cli.frames import read_frame
 from flexsurr.report.airliner_flight_figures import figure_18, figure_19, figure_20, figure_21
 from flexsurr.report.airliner_geometry_figures import figure_16, figure_17, mode_shapes
 from flexsurr.report.airliner_learning_figures import coefficient_errors
@@ -20,10 +19,10 @@ def main(job: Job, selection: Path, runs: Path, modes: Path, doublets: Path, fol
     save(figure_16(model, plane.airframe.lattice), folder / "figure_16")
     save(figure_17(model, plane.modes.properties.centre_of_gravity), folder / "figure_17")
     save(mode_shapes(plane.modes, range(1, len(plane.modes.omega_rad_s) + 1)), folder / "elastic_modes")
-    save(figure_18(pd.read_parquet(modes)), folder / "figure_18")
+    save(figure_18(read_frame(modes)), folder / "figure_18")
     chosen = json.loads(selection.read_text(encoding="utf-8"))["network"]["run_id"]
-    save(coefficient_errors(pd.read_parquet(runs / chosen / "errors.parquet")), folder / "coefficient_errors")
-    histories = pd.read_parquet(doublets)
+    save(coefficient_errors(read_frame(runs / chosen / "errors.parquet")), folder / "coefficient_errors")
+    histories = read_frame(doublets)
     times = plane.settings.doublet
     for control, draw, name in (
         ("elevator", figure_19, "figure_19"),

@@ -5,6 +5,13 @@ from pathlib import Path
 import pandas as pd
 
 from flexsurr.storage import replacing
+from flexsurr.storage.arrow import read_table
+
+
+def read_frame(path: Path) -> pd.DataFrame:
+    """The frame in a Parquet file."""
+    frame: pd.DataFrame = read_table(path).to_pandas(use_threads=False)
+    return frame
 
 
 def write_frame(path: Path, frame: pd.DataFrame) -> None:

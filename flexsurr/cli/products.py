@@ -9,6 +9,7 @@ from typing import Any
 import pandas as pd
 
 from flexsurr.cli.command import Job
+from flexsurr.cli.frames import read_frame
 from flexsurr.config.structure import Structure
 
 
@@ -35,7 +36,7 @@ def _read(read: str, job: Job, inputs: Sequence[Path]) -> Any:
     if read in ("metrics", "relatives"):
         return pd.DataFrame([json.loads(path.read_text(encoding="utf-8")) for path in files])
     if read == "history":
-        frames = [pd.read_parquet(path).assign(run_id=path.parent.name) for path in files]
+        frames = [read_frame(path).assign(run_id=path.parent.name) for path in files]
     else:
-        frames = [pd.read_parquet(path) for path in files]
+        frames = [read_frame(path) for path in files]
     return pd.concat([frame for frame in frames if len(frame)] or frames, ignore_index=True)

@@ -7,7 +7,7 @@ from typing import Any
 import pandas as pd
 
 from flexsurr.cli.command import Job, command
-from flexsurr.cli.frames import write_frame
+from flexsurr.cli.frames import read_frame, write_frame
 from flexsurr.storage import StorageError, write_json
 from flexsurr.training.tracking import end_sweep, read_store
 
@@ -29,7 +29,7 @@ def main(job: Job, runs: Path, store: Path, output: Path, table: Path) -> None:
             best[figures["model"]] = figures
     if "network" not in best:
         raise StorageError(f"{runs}: no network of the airliner has finished; see their metrics.json")
-    frames = [pd.read_parquet(runs / chosen["run_id"] / "accuracy.parquet") for chosen in best.values()]
+    frames = [read_frame(runs / chosen["run_id"] / "accuracy.parquet") for chosen in best.values()]
     write_frame(table, pd.concat(frames, ignore_index=True))
     write_json(output, best)
     end_sweep(read_store(store), job["study"], metrics)

@@ -16,6 +16,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
+from flexsurr.storage.arrow import read_table
 from flexsurr.storage.atomic import replacing
 from flexsurr.storage.errors import StorageError
 
@@ -79,7 +80,7 @@ def read_shard(path: Path, sha256: str | None = None) -> Shard:
     if sha256 is not None and hashlib.sha256(content).hexdigest() != sha256:
         raise StorageError(f"{path}: is not the file that was recorded (its SHA-256 differs)")
     try:
-        table = pq.read_table(pa.BufferReader(content), page_checksum_verification=True)
+        table = read_table(content)
     except (pa.ArrowException, OSError) as error:
         reason = str(error).splitlines()[0]
         raise StorageError(f"{path}: damaged or truncated, not a readable Parquet file: {reason}") from None

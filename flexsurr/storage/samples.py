@@ -14,6 +14,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
+from flexsurr.storage.arrow import read_table
 from flexsurr.storage.atomic import replacing
 from flexsurr.storage.errors import StorageError
 
@@ -76,7 +77,7 @@ def read_samples(path: Path) -> Samples:
     except OSError as error:
         raise StorageError(f"{path}: cannot be read: {error.strerror}") from None
     try:
-        table = pq.read_table(pa.BufferReader(content), page_checksum_verification=True)
+        table = read_table(content)
     except (pa.ArrowException, OSError) as error:
         reason = str(error).splitlines()[0]
         raise StorageError(f"{path}: damaged or truncated, not a readable Parquet file: {reason}") from None

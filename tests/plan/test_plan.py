@@ -170,4 +170,6 @@ def test_the_papers_recipe_stands_beside_the_default_sweep():
     assert set(sweeps) == {"default", "paper"}
     assert [key.split("-")[0] for key in sweeps["paper"]] == ["hnn", "mlp"] * 2
     alone = Plan(load(REPOSITORY, ["config/config.yaml"]))
-    assert alone.runs.keys() < Plan(configuration).runs.keys()
+    assert set(alone.runs_of(BEAM)) < set(Plan(configuration).runs_of(BEAM))
+    sweeps = Plan(configuration).select("wing_unit")["sweeps"]
+    assert [key.split("-")[0] for key in sweeps["paper"]] == ["dissipative_hnn", "mlp"] * 2
