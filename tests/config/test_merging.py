@@ -59,7 +59,8 @@ def test_the_blame_goes_to_the_last_file_that_holds_the_value():
 @pytest.mark.parametrize("preset", [path.name for path in (REPOSITORY / "config/presets").glob("*.yaml")])
 def test_every_preset_is_sound(preset):
     configuration = load(REPOSITORY, ["config/config.yaml", f"config/presets/{preset}"])
-    assert [study.name for study in configuration.studies] == ["cantilever", "wing"]
+    structures = [study.structure.name for study in configuration.studies]
+    assert structures == ["cantilever", "wing"]
 
 
 def test_a_study_has_its_own_values_and_otherwise_those_of_the_study_it_is_based_on(tmp_path):
