@@ -14,6 +14,7 @@ from flexsurr.report.style import (
     PAGE_IN,
     VARIANTS,
     colour,
+    family,
     label,
     letter,
     logarithmic,
@@ -49,7 +50,7 @@ def cost_accuracy(cost: pd.DataFrame) -> Figure:
     """
     responses = [response for response in RESPONSES if response in set(cost["response"])]
     variants = [variant for variant in VARIANTS if variant in set(cost["variant"])]
-    figure = new_figure(PAGE_IN, 0.7 + 3.1 * len(responses))
+    figure = new_figure(PAGE_IN, 0.7 + 0.05 * cost["model"].nunique() + 3.1 * len(responses))
     grid = figure.subplots(len(responses), len(variants), sharex=True, sharey=True, squeeze=False)
     for row, response in zip(grid, responses, strict=True):
         for ax, variant in zip(row, variants, strict=True):
@@ -113,7 +114,7 @@ def _panel(ax: Axes, cost: pd.DataFrame) -> None:
         way = implementation if method == "scipy_radau" else SHORT.get(method, method)
         name = label(model).replace(NAMES["rom"], "ROM")
         if (of_front and error <= WORTH_NAMING_PERCENT) or _is_landmark(model, implementation, method):
-            labels.append((point, f"{name}, {way}", colour(model)))
+            labels.append((point, f"{name}, {way}", colour(family(model))))
         elif model == "rom":
             # surrogates stand at the same heights or to their left: one model names the integrators
             labels.append((point, way, colour(model)))
@@ -135,13 +136,14 @@ def _is_landmark(model: str, implementation: str, method: str) -> bool:
 def _published(ax: Axes, cost: pd.DataFrame) -> None:
     """The study's own ratio, as a wall time beside our described reduced model."""
     described = cost[(cost["model"] == "rom") & (cost["implementation"] == "described")]["wall_s_mean"]
-    percent = cost["paper_percent"].dropna()
-    if described.empty or percent.empty:
+    published = cost[cost["paper_percent"].notna()]
+    if described.empty or published.empty:
         return
-    at = float(described.iloc[0]) * float(percent.iloc[0]) / 100.0
+    model, percent = published.iloc[0][["model", "paper_percent"]]
+    at = float(described.iloc[0]) * float(percent) / 100.0
     ax.axvline(at, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)), zorder=0)
     ax.annotate(
-        f"published HNN, {percent.iloc[0]:g} % of described",
+        f"published {label(model)}, {percent:g} % of described",
         (at, 0.45),
         xycoords=("data", "axes fraction"),
         xytext=(-2, 0),
@@ -176,4 +178,10 @@ def _legend(figure: Figure, cost: pd.DataFrame) -> None:
         if name in set(cost["implementation"])
     ]
     handles.append(Line2D([], [], color="#C9C9C9", linewidth=3.0, label="Pareto front"))
-    figure.legend(handles=handles, loc="outside upper center", ncols=-(-len(handles) // 2))
+    # as few rows as fit the page
+    for columns in range(len(handles), 0, -1):
+        legend = figure.legend(handles=handles, loc="outside upper center", ncols=columns)
+        figure.canvas.draw()
+        if legend.get_window_extent().width <= figure.bbox.width or columns == 1:
+            return
+        legend.remove()

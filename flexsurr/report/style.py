@@ -67,25 +67,26 @@ VARIANTS: dict[str, str] = {
 
 def colour(model: str) -> str:
     """The colour of a model; a pale one of its family where the name carries more, as in "hnn_paper"."""
-    family = _family(model)
-    red, green, blue = to_rgb(COLOURS[family])
-    share = 1.0 if model == family else 0.5
+    base = family(model)
+    red, green, blue = to_rgb(COLOURS[base])
+    share = 1.0 if model == base else 0.5
     return to_hex((1 - share + share * red, 1 - share + share * green, 1 - share + share * blue))
 
 
 def label(model: str) -> str:
     """The model's name in legends, with what its name carries beyond the family in brackets."""
-    family = _family(model)
-    rest = model[len(family) :].strip("_ ")
-    return f"{NAMES[family]} ({rest.replace('_', ' ')})" if rest else NAMES[family]
+    base = family(model)
+    rest = model[len(base) :].strip("_ ")
+    return f"{NAMES[base]} ({rest.replace('_', ' ')})" if rest else NAMES[base]
 
 
 def dashes(model: str) -> Any:
     """The line style of a model."""
-    return DASHES.get(_family(model), "-")
+    return DASHES.get(family(model), "-")
 
 
-def _family(model: str) -> str:
+def family(model: str) -> str:
+    """The name that says a model's colour and line style; KeyError for a model of none."""
     families = [name for name in COLOURS if model == name or model.startswith(f"{name}_")]
     if not families:
         raise KeyError(f"no colour for the model {model!r}: one of {', '.join(COLOURS)}")
