@@ -61,6 +61,7 @@ FIGURES: dict[str, Product] = {
     "architecture_errors": Product("Errors by architecture", ("relatives",), damped),
     "cost_accuracy": Product("Cost against accuracy", ("cost-*-*",)),
     "training_loss": Product("Training loss against wall time", ("history", "metrics")),
+    "training_epochs": Product("Training loss against epochs", ("history", "metrics")),
 }
 
 TABLES: dict[str, Product] = {

@@ -12,7 +12,7 @@ from flexsurr.report.energy_figures import figure_13
 from flexsurr.report.kinematic_figures import figure_03, figure_04
 from flexsurr.report.response_figures import figure_10, figure_12
 from flexsurr.report.schematics import figure_05, figure_06, figure_07, figure_11
-from flexsurr.report.training_figures import training_loss
+from flexsurr.report.training_figures import training_epochs, training_loss
 
 DRAW: dict[str, Callable[..., Figure]] = {
     draw.__name__: draw
@@ -34,5 +34,6 @@ DRAW: dict[str, Callable[..., Figure]] = {
         architecture_errors,
         cost_accuracy,
         training_loss,
+        training_epochs,
     )
 }

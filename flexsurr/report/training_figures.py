@@ -1,4 +1,4 @@
-"""What training costs: loss against wall time."""
+"""What training costs: loss against wall time and against epochs."""
 
 import pandas as pd
 from matplotlib.axes import Axes
@@ -37,9 +37,22 @@ def training_loss(history: pd.DataFrame, metrics: pd.DataFrame) -> Figure:
     variant, one column for each architecture that is trained step by step; a model found in one step of
     least squares is a point in every panel of its variant, for comparison.
     """
+    return _panels(history, metrics, "wall_s", "wall time of training [s]")
+
+
+@styled
+def training_epochs(history: pd.DataFrame, metrics: pd.DataFrame) -> Figure:
+    """The same against epochs: passes over the samples, or steps of a method that uses all of them at once.
+
+    A model found by least squares stands at the first.
+    """
+    return _panels(history, metrics.assign(epoch=1), "epoch", "epochs")
+
+
+def _panels(history: pd.DataFrame, metrics: pd.DataFrame, along: str, name: str) -> Figure:
     variants = [variant for variant in VARIANTS if variant in set(metrics["variant"])]
-    stepwise = metrics[metrics["optimiser"] != "least_squares"]
-    architectures = list(dict.fromkeys(stepwise["architecture"])) or list(
+    solved = metrics["optimiser"] == "least_squares"
+    architectures = list(dict.fromkeys(metrics[~solved]["architecture"])) or list(
         dict.fromkeys(metrics["architecture"])
     )
     figure = new_figure(PAGE_IN, 0.6 + 2.25 * len(variants))
@@ -50,38 +63,38 @@ def training_loss(history: pd.DataFrame, metrics: pd.DataFrame) -> Figure:
         for ax, architecture in zip(row, architectures, strict=True):
             for run in of_variant[of_variant["architecture"] == architecture].itertuples():
                 if run.optimiser != "least_squares" and run.run_id in curves:
-                    _curves(ax, curves[run.run_id], str(run.optimiser))
-            _points(ax, of_variant[of_variant["optimiser"] == "least_squares"])
+                    _curves(ax, curves[run.run_id], along, str(run.optimiser))
+            _points(ax, of_variant[of_variant["optimiser"] == "least_squares"], along)
             logarithmic(ax, x=True, y=True)
-            ax.set_title(f"{label(architecture)}, {VARIANTS[variant]}", loc="left")
-        row[0].set_ylabel("loss (nmse)")
+            ax.set_title(label(architecture), loc="left")
+        row[0].set_ylabel(f"{VARIANTS[variant]}\nloss (nmse)")
     for ax in grid[-1]:
-        ax.set_xlabel("wall time of training [s]")
-    _legend(figure, grid[0, 0], [o for o in OPTIMISERS if o in set(metrics["optimiser"])])
+        ax.set_xlabel(name)
+    optimisers = [optimiser for optimiser in OPTIMISERS if optimiser in set(metrics["optimiser"])]
+    _legend(figure, grid[0, 0], optimisers, list(dict.fromkeys(metrics[solved]["architecture"])))
     letter(grid.ravel())
     return figure
 
 
-def _curves(ax: Axes, curve: pd.DataFrame, optimiser: str) -> None:
+def _curves(ax: Axes, curve: pd.DataFrame, along: str, optimiser: str) -> None:
     colour = OPTIMISERS[optimiser][1]
-    curve = curve[curve["wall_s"] > 0.0]
-    ax.plot(
-        curve["wall_s"], curve["train_loss"], color=colour, linewidth=0.6, linestyle=(0, (1, 1)), alpha=0.8
-    )
-    ax.plot(curve["wall_s"], curve["validation_loss"], color=colour, linewidth=1.1, alpha=0.9)
+    curve = curve[curve[along] > 0.0]
+    ax.plot(curve[along], curve["train_loss"], color=colour, linewidth=0.6, linestyle=(0, (1, 1)), alpha=0.8)
+    ax.plot(curve[along], curve["validation_loss"], color=colour, linewidth=1.1, alpha=0.9)
 
 
-def _points(ax: Axes, solved: pd.DataFrame) -> None:
-    ax.plot(solved["wall_s"], solved["validation_nmse"], "D", color=OPTIMISERS["least_squares"][1], zorder=5)
+def _points(ax: Axes, solved: pd.DataFrame, along: str) -> None:
+    ax.plot(solved[along], solved["validation_nmse"], "D", color=OPTIMISERS["least_squares"][1], zorder=5)
 
 
-def _legend(figure: Figure, ax: Axes, optimisers: list[str]) -> None:
+def _legend(figure: Figure, ax: Axes, optimisers: list[str], solved: list[str]) -> None:
     handles, names = [], []
+    by_least_squares = ", ".join(label(architecture) for architecture in solved)
     for optimiser in optimisers:
         name, colour = OPTIMISERS[optimiser]
         marker, line = ("D", "") if optimiser == "least_squares" else ("", "-")
         handles += ax.plot([], [], color=colour, marker=marker, linestyle=line)
-        names.append("polynomial H, " + name if optimiser == "least_squares" else name)
+        names.append(f"{by_least_squares}, {name}" if optimiser == "least_squares" else name)
     handles += ax.plot([], [], color="#555555", linestyle="-")
     handles += ax.plot([], [], color="#555555", linestyle=(0, (1, 1)), linewidth=0.6)
     figure.legend(handles, [*names, "validation", "training"], loc="outside upper center", ncols=4)

@@ -13,7 +13,7 @@ EVALUATED = {"responses": 2, "evaluate": 4}
 DRAWN_FROM_RESPONSES = {f"draw_{BEAM}_figure_{number}": 1 for number in (10, 12, 13)}
 DRAWN_FROM_COSTS = {f"draw_{BEAM}_cost_accuracy": 1, f"tabulate_{BEAM}_cost": 1, "join": 1}
 DRAWN_FROM_RUNS = {
-    f"draw_{BEAM}_training_loss": 1,
+    f"draw_{BEAM}_training_loss_training_epochs": 1,
     f"tabulate_{BEAM}_training_architectures_seeds": 1,
     "join": 1,
 }
