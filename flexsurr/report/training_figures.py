@@ -46,7 +46,7 @@ def training_epochs(history: pd.DataFrame, metrics: pd.DataFrame) -> Figure:
 
     A model found by least squares stands at the first.
     """
-    return _panels(history, metrics.assign(epoch=1), "epoch", "epochs")
+    return _panels(history, metrics.assign(epoch=1), "epoch", "epochs [–]")
 
 
 def _panels(history: pd.DataFrame, metrics: pd.DataFrame, along: str, name: str) -> Figure:
