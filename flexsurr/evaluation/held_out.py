@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from flexsurr.training import Dataset
-from flexsurr.training.losses import nmse_per_state
+from flexsurr.training.losses import FieldErrors
 
 
 def held_out_errors(surrogate: Any, dataset: Dataset) -> dict[str, Any]:
@@ -15,7 +15,7 @@ def held_out_errors(surrogate: Any, dataset: Dataset) -> dict[str, Any]:
     variance of the target, and held_out_nmse_by_state, the same for each state by its name. One dataset
     for all runs of a study, whatever each was trained on. A figure that has no finite value is None.
     """
-    error = nmse_per_state(surrogate.derivative(0.0, dataset.x_validation), dataset.dx_validation)
+    error = FieldErrors.over(surrogate, dataset.validation_blocks()).nmse_per_state()
     by_state: dict[str, float | None] = dict(
         zip(dataset.state_names, map(_finite, error.tolist()), strict=True)
     )

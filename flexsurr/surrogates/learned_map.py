@@ -1,8 +1,7 @@
 """Learned maps of the coordinates η: to positions and directions, or to generalised forces.
 
 The Jacobian of learned positions gives generalised forces, Q = (∂r̂/∂η)ᵀ F, which do the work of F along
-them exactly; the same map gives the outputs. Angles are learned as sine and cosine, for they jump
-themselves where they pass ±π.
+them exactly; the same map gives the outputs.
 """
 
 from abc import ABC, abstractmethod
@@ -61,13 +60,6 @@ class LearnedMap(ABC):
         """Q = (∂r̂/∂η)ᵀ F, (..., r), for forces (m,) or (..., m) on the outputs."""
         weighted: Array = np.einsum("...mk,...m->...k", self.jacobian(eta), force)
         return weighted
-
-    def angle(self, eta: Array, sine: str, cosine: str) -> Array:
-        """The angle (...) [rad] whose sine and cosine are the outputs of these names."""
-        outputs = self(eta)
-        return np.arctan2(
-            outputs[..., self.output_names.index(sine)], outputs[..., self.output_names.index(cosine)]
-        )
 
     def _check_outputs(self, count: int) -> None:
         if count != len(self.output_names):

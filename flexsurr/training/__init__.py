@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from flexsurr.training.dataset import Dataset, ShardedDataset, load_dataset, split_dataset
     from flexsurr.training.fitting import Fit, fit
     from flexsurr.training.learned_maps import fit_network_map, fit_polynomial_map
-    from flexsurr.training.losses import nmse, nmse_per_state
+    from flexsurr.training.losses import nmse
     from flexsurr.training.networks import torch_model
     from flexsurr.training.selection import select
     from flexsurr.training.sweep import expand, run_id
@@ -26,7 +26,6 @@ __all__ = [
     "fit_polynomial_map",
     "load_dataset",
     "nmse",
-    "nmse_per_state",
     "run_id",
     "select",
     "split_dataset",
@@ -43,7 +42,6 @@ _MODULES = {
     "fit_polynomial_map": "learned_maps",
     "load_dataset": "dataset",
     "nmse": "losses",
-    "nmse_per_state": "losses",
     "run_id": "sweep",
     "select": "selection",
     "split_dataset": "dataset",

@@ -2,7 +2,7 @@
 
 import math
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
@@ -23,7 +23,7 @@ from flexsurr.surrogates import (
     feature_scaling,
 )
 from flexsurr.training.adam import Adam
-from flexsurr.training.dataset import Block, Dataset, SampleSource, for_each_piece
+from flexsurr.training.dataset import Dataset, SampleSource
 from flexsurr.training.epochs import Limits, Loss, Report, run_epochs
 from flexsurr.training.initialisation import initial_parameters
 from flexsurr.training.inverse_dynamics import NotPositiveDefinite, fit_port_hamiltonian
@@ -90,7 +90,7 @@ def fit(trial: Trial, source: SampleSource, folder: str | Path, report: Report |
         report,
     )
     network = replace(network, parameters=progress.best_parameters)
-    errors = _errors(network, dataset.validation_blocks())
+    errors = FieldErrors.over(network, dataset.validation_blocks())
     return Fit(
         surrogate=network,
         status="failed" if reason else "finished",
@@ -169,8 +169,8 @@ def _fit_linear(trial: Trial, source: SampleSource, report: Report | None) -> Fi
             surrogate = fit_port_hamiltonian(source, trial.degree)
         except NotPositiveDefinite as failure:
             surrogate, reason = failure.surrogate, str(failure)
-    training = _errors(surrogate, source.training_blocks())
-    validation = _errors(surrogate, source.validation_blocks())
+    training = FieldErrors.over(surrogate, source.training_blocks())
+    validation = FieldErrors.over(surrogate, source.validation_blocks())
     losses = training.nmse(), validation.nmse()
     progress = Progress(math.inf, surrogate.parameters)
     progress.add(time.perf_counter() - start, *losses, surrogate.parameters)
@@ -189,10 +189,3 @@ def _fit_linear(trial: Trial, source: SampleSource, report: Report | None) -> Fi
         history=progress.history(),
         validation_nmse_per_state=tuple(validation.nmse_per_state().tolist()),
     )
-
-
-def _errors(surrogate: Surrogate, blocks: Iterator[Block]) -> FieldErrors:
-    """Of the surrogate's field over all samples of the blocks."""
-    errors = FieldErrors(surrogate)
-    for_each_piece(blocks, errors.add)
-    return errors

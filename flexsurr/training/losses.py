@@ -1,10 +1,14 @@
 """The loss that training reports: nmse."""
 
+from collections.abc import Iterable
+from typing import Self
+
 import numpy as np
 
 from flexsurr.simulation.rhs import Array
 from flexsurr.storage.moments import Moments
 from flexsurr.surrogates import Surrogate
+from flexsurr.training.dataset import Block, for_each_piece
 
 
 def output_weights(target: Array) -> Array:
@@ -28,12 +32,6 @@ def nmse(predicted: Array, target: Array) -> float:
     return float(np.mean((predicted - target) ** 2, axis=0) @ output_weights(target))
 
 
-def nmse_per_state(predicted: Array, target: Array) -> Array:
-    """Mean squared error of each output over its target's variance, (m, d) -> (d,); their mean is `nmse`."""
-    errors: Array = np.mean((predicted - target) ** 2, axis=0) * output_weights(target) * target.shape[1]
-    return errors
-
-
 class FieldErrors:
     """The nmse of a surrogate's field, gathered block by block."""
 
@@ -43,13 +41,20 @@ class FieldErrors:
         self._squares = np.zeros(count)
         self._target = Moments.of(np.empty((0, count)))
 
+    @classmethod
+    def over(cls, surrogate: Surrogate, blocks: Iterable[Block]) -> Self:
+        """Those over all samples of the blocks."""
+        errors = cls(surrogate)
+        for_each_piece(blocks, errors.add)
+        return errors
+
     def add(self, x: Array, dx: Array) -> None:
         """Samples of states `x` and derivatives `dx` (m, 2r) in their units."""
         self._squares += np.sum((self._surrogate.derivative(0.0, x) - dx) ** 2, axis=0)
         self._target = self._target.joined(Moments.of(dx))
 
     def nmse_per_state(self) -> Array:
-        """As the function of that name (2r,), over all samples so far."""
+        """Mean squared error of each rate over its variance (2r,); their mean is `nmse`."""
         variance = self._target.variance
         errors: Array = self._squares / self._target.rows * weights_of_variance(variance) * variance.size
         return errors

@@ -17,7 +17,9 @@ def errors(predict):
     trajectory = np.repeat([0, 1], 20)
     dataset = split_dataset(trajectory, x, dx, validation=(1,), state_names=NAMES, state_units=UNITS)
     field = predict(x, dx)
-    surrogate = SimpleNamespace(derivative=lambda t, states: field[np.searchsorted(trajectory, 1) :])
+    surrogate = SimpleNamespace(
+        state_names=NAMES, derivative=lambda t, states: field[np.searchsorted(trajectory, 1) :]
+    )
     return held_out_errors(surrogate, dataset)
 
 

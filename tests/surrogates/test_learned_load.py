@@ -113,14 +113,6 @@ def test_it_works_on_what_it_loads():
     assert abs(model.energy(x[-1]) - model.energy(x[0])) > 1e-3
 
 
-def test_an_angle_is_whole_where_it_jumps():
-    """Sine and cosine are smooth; the angle between them is given in (−π, π]."""
-    exponents = np.array([[0], [1]])
-    learned = PolynomialMap(np.array([1.0]), ("s", "c"), exponents, np.array([[0.0, -1.0], [0.1, 0.0]]))
-    found = learned.angle(np.array([[-0.5], [0.5]]), "s", "c")
-    np.testing.assert_allclose(found, [-np.pi + np.arctan(0.05), np.pi - np.arctan(0.05)])
-
-
 @EACH
 def test_round_trip_and_damage(kind, tmp_path):
     learned, path = MAPS[kind](), tmp_path / "map.npz"

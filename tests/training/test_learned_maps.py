@@ -32,13 +32,12 @@ FITS = {
 
 
 @pytest.mark.parametrize("kind", FITS)
-def test_positions_forces_and_angle(kind):
+def test_positions_and_forces(kind):
     make, tolerance = FITS[kind]
     learned = make()
     np.testing.assert_allclose(learned(FRESH), outputs(FRESH), atol=tolerance)
     found = learned.generalised_force(FRESH, np.array([3.0, -2.0, 0.0, 0.0]))
     np.testing.assert_allclose(found, force(FRESH, 3.0, -2.0), atol=50 * tolerance)
-    np.testing.assert_allclose(learned.angle(FRESH, "sin", "cos"), FRESH.sum(axis=1), atol=2 * tolerance)
 
 
 def test_a_polynomial_is_found_to_rounding_in_blocks(monkeypatch):

@@ -52,6 +52,17 @@ def test_every_figure_and_table_is_there(quick):
     assert (quick.results / "report.html").stat().st_size > 100_000
 
 
+def test_the_best_surrogates_stand_in_the_costs_of_forced_responses_under_learned_loads_too(quick):
+    cost = pd.read_csv(quick.results / "tables" / "cost.csv")
+    learned = cost[cost["model"].str.contains("_learned_load|_network_load")]
+    assert set(learned["response"]) == {"forced"}
+    assert (learned["diverged"] == 0).all()
+    for study in (BEAM, "wing"):
+        for variant in quick.plan.variants(study):
+            names = learned[(learned["study"] == study) & (learned["variant"] == variant)]["model"].unique()
+            assert [name.endswith(("_learned_load", "_network_load")) for name in names] == [True, True]
+
+
 def test_the_airliner_is_there_and_its_costs_stand_among_the_others(quick):
     figures = {path.stem for path in (quick.results / "figures" / "airliner").glob("*.png")}
     assert figures >= {*(f"figure_{number}" for number in range(16, 22)), "coefficient_errors"}
