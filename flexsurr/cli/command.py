@@ -40,7 +40,7 @@ def command(
     )
     module = sys.modules["__main__"]
     parser = argparse.ArgumentParser(prog=f"python -m {_name()}", description=module.__doc__)
-    parser.add_argument("--job", type=_job, required=True, metavar="JSON", help="the values; or @file")
+    parser.add_argument("--job", type=_job, required=True, metavar="FILE", help="the values, as JSON")
     for option, text in files.items():
         parser.add_argument(
             f"--{option}",
@@ -69,11 +69,11 @@ def _name() -> str:
 
 def _job(text: str) -> Job:
     try:
-        content = json.loads(Path(text[1:]).read_text(encoding="utf-8") if text.startswith("@") else text)
+        content = json.loads(Path(text).read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
-        raise argparse.ArgumentTypeError(f"{text!r:.80} is no job: {error}") from None
+        raise argparse.ArgumentTypeError(f"{text} is no job: {error}") from None
     if not isinstance(content, dict):
-        raise argparse.ArgumentTypeError(f"{text!r:.80} is no job: not a JSON object")
+        raise argparse.ArgumentTypeError(f"{text} is no job: not a JSON object")
     return content
 
 

@@ -9,12 +9,17 @@ from flexsurr.storage import build_manifest, write_manifest
 log = logging.getLogger(__name__)
 
 
-def main(job: Job, shards: list[Path], output: Path) -> None:
-    """Write the manifest of `shards`; StorageError names every shard that does not belong to the dataset."""
-    manifest = build_manifest(shards, **job)
+def main(job: Job, folder: Path, output: Path) -> None:
+    """Write the manifest of the shards in `folder`, as many as the job says.
+
+    StorageError names every shard that does not belong to the dataset.
+    """
+    expected = dict(job)
+    shards = [folder / f"shard-{number:04d}.parquet" for number in range(expected.pop("shards"))]
+    manifest = build_manifest(shards, **expected)
     write_manifest(output, manifest)
     log.info("%s: %d trajectories, %d samples", output, manifest.trajectories, manifest.samples)
 
 
 if __name__ == "__main__":
-    command(main, {"shards": "the shards of the dataset …", "output": "the manifest"})
+    command(main, {"folder": "of the shards", "output": "the manifest"})

@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Sequence
-from fnmatch import fnmatch
 from pathlib import Path
 from typing import Any
 
@@ -13,12 +12,9 @@ from flexsurr.cli.frames import read_frame
 from flexsurr.config.structure import Structure
 
 
-def arguments(reads: Sequence[str], job: Job, inputs: Sequence[Path]) -> list[Any]:
-    """What a product of flexsurr.report `reads`, found in the job and among the files `inputs`.
-
-    Raises FileNotFoundError if no file fits one of `reads`.
-    """
-    return [_read(read, job, inputs) for read in reads]
+def arguments(job: Job, results: Path) -> list[Any]:
+    """What the job `reads`, in its order: its structure, or what its files below `results` hold."""
+    return [_read(read, job, [results / file for file in files]) for read, files in job["reads"].items()]
 
 
 def text_of(caption: Path) -> str:
@@ -26,13 +22,9 @@ def text_of(caption: Path) -> str:
     return " ".join(caption.read_text(encoding="utf-8").split())
 
 
-def _read(read: str, job: Job, inputs: Sequence[Path]) -> Any:
+def _read(read: str, job: Job, files: Sequence[Path]) -> Any:
     if read == "structure":
         return Structure.model_validate(job["structure"])
-    stem = "metrics" if read == "relatives" else read
-    files = [path for path in inputs if fnmatch(path.stem, stem)]
-    if not files:
-        raise FileNotFoundError(f"no file is given that holds {read}")
     if read in ("metrics", "relatives"):
         return pd.DataFrame([json.loads(path.read_text(encoding="utf-8")) for path in files])
     if read == "history":

@@ -13,7 +13,7 @@ A product says what it `reads`, in the order of its function's arguments:
 A figure may show what only some structures have: `Product.shows` says of which it is made.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from flexsurr.config.structure import Structure
@@ -73,11 +73,3 @@ TABLES: dict[str, Product] = {
     "cost": Product("Cost and accuracy", ("cost-*-*",)),
     "learned_loads": Product("Learned loads", ("learned_loads-*",)),
 }
-
-
-def by_reads(products: Mapping[str, Product]) -> dict[tuple[str, ...], list[str]]:
-    """The names of the products that read the same, by what they read."""
-    names: dict[tuple[str, ...], list[str]] = {}
-    for name, product in products.items():
-        names.setdefault(product.reads, []).append(name)
-    return names

@@ -96,17 +96,31 @@ def write_store(path: Path, store: Store) -> None:
     write_json(path, {**asdict(store), "uri": None if is_beside else store.uri})
 
 
-def read_store(path: Path) -> Store:
-    """The store that `write_store` wrote to `path`."""
-    values = json.loads(path.read_text(encoding="utf-8"))
-    return Store(**{**values, "uri": store_uri(values["uri"], path.parent)})
+def read_store(path: Path) -> Store | None:
+    """The store that `write_store` wrote to `path`; None, and a warning, where there is none to be read."""
+    try:
+        values = json.loads(path.read_text(encoding="utf-8"))
+        return Store(**{**values, "uri": store_uri(values["uri"], path.parent)})
+    except (OSError, ValueError, TypeError, KeyError) as error:
+        log.warning("tracking: %s: no store (%s); results are made without it", path, error)
+        return None
 
 
-def create_store(uri: str, folder: Path, studies: Sequence[str]) -> Store:
+def create_store(uri: str, folder: Path, studies: Sequence[str]) -> Store | None:
     """Create the store, or what is missing in it; two processes must not do this at once.
 
-    Artefacts of a local store go into `folder`; a server keeps them as it likes.
+    Artefacts of a local store go into `folder`; a server keeps them as it likes. None, and a warning, where
+    the store cannot be reached.
     """
+    try:
+        return _created(uri, folder, studies)
+    # The server may be away, the database foreign or read-only: nothing of it is worth a result.
+    except Exception as error:
+        log.warning("tracking: %s: %s: %s; results are made without it", uri, type(error).__name__, error)
+        return None
+
+
+def _created(uri: str, folder: Path, studies: Sequence[str]) -> Store:
     folder.mkdir(parents=True, exist_ok=True)
     client = MlflowClient(uri)
     local = uri.startswith("sqlite:")
@@ -130,8 +144,8 @@ def create_store(uri: str, folder: Path, studies: Sequence[str]) -> Store:
 
 
 @contextmanager
-def tracked(store: Store, study: str, run_key: str, parameters: Mapping[str, Any]) -> Iterator[Trial]:
-    """A child run of the study's sweeps for the time of the block.
+def tracked(store: Store | None, study: str, run_key: str, parameters: Mapping[str, Any]) -> Iterator[Trial]:
+    """A child run of the study's sweeps for the time of the block; without a store, a trial untold.
 
     A run of the same key that an earlier, killed job left RUNNING is ended and deleted. The run ends
     FINISHED, or FAILED with its reason as a tag where the trial says so or an exception passes, or
@@ -143,11 +157,11 @@ def tracked(store: Store, study: str, run_key: str, parameters: Mapping[str, Any
     status = "KILLED"
     try:
         with _signals_wait():
-            run = page.attempt(lambda client: _start(client, store, study, run_key, parameters))
+            run = page.attempt(lambda client, store: _start(client, store, study, run_key, parameters))
         if run is not None:
-            trial._report = lambda metrics: page.attempt(lambda client: _send(client, run, metrics))
+            trial._report = lambda metrics: page.attempt(lambda client, _: _send(client, run, metrics))
             trial._keep = lambda metrics, tags, files: page.attempt(
-                lambda client: _keep(client, run, metrics, tags, files)
+                lambda client, _: _keep(client, run, metrics, tags, files)
             )
         yield trial
         status = "FINISHED" if trial.status == "finished" else "FAILED"
@@ -158,7 +172,7 @@ def tracked(store: Store, study: str, run_key: str, parameters: Mapping[str, Any
         if run is not None:
             with _signals_wait():
                 trial.send()
-                page.insist(lambda client: _end(client, run, status, trial.reason))
+                page.insist(lambda client, _: _end(client, run, status, trial.reason))
 
 
 @contextmanager
@@ -181,14 +195,14 @@ def _signals_wait() -> Iterator[None]:
             signal.raise_signal(number)
 
 
-def end_sweep(store: Store, study: str, final: Mapping[str, Mapping[str, Any]]) -> None:
+def end_sweep(store: Store | None, study: str, final: Mapping[str, Mapping[str, Any]]) -> None:
     """Record the final figures of each run (key → metrics) and end the sweep's parent run.
 
     No trial of the study runs any more: whatever is left RUNNING was killed, and ends so.
     """
     page = _Page(store)
 
-    def finish(client: MlflowClient) -> None:
+    def finish(client: MlflowClient, store: Store) -> None:
         runs = _all_runs(client, store.experiments[study])
         for run in runs:
             key = run.data.tags.get(RUN_KEY)
@@ -205,37 +219,39 @@ def end_sweep(store: Store, study: str, final: Mapping[str, Mapping[str, Any]]) 
 class _Page:
     """A client whose trouble is a warning: after it, the page is left alone until `insist`."""
 
-    def __init__(self, store: Store) -> None:
-        self._uri = store.uri
+    def __init__(self, store: Store | None) -> None:
+        self._store = store
         self._client: MlflowClient | None = None
         self._connect()
 
-    def attempt(self, action: Callable[[MlflowClient], Any]) -> Any:
-        """The result of `action`; None where there is trouble now, or has been."""
-        client = self._client
-        if client is None:
+    def attempt(self, action: Callable[[MlflowClient, Store], Any]) -> Any:
+        """The result of `action`; None where there is no store, or trouble now, or has been."""
+        if self._client is None or self._store is None:
             return None
         try:
-            return action(client)
+            return action(self._client, self._store)
         # The database may be deleted, locked or full, the server away: nothing of it is worth a result.
         except Exception as error:
             self._warn(error)
             return None
 
-    def insist(self, action: Callable[[MlflowClient], Any]) -> Any:
+    def insist(self, action: Callable[[MlflowClient, Store], Any]) -> Any:
         """`attempt`, once more even after trouble."""
         if self._client is None:
             self._connect()
         return self.attempt(action)
 
     def _connect(self) -> None:
-        path = Path(self._uri.removeprefix("sqlite:///"))
-        if self._uri.startswith("sqlite:///") and not path.is_file():
+        if self._store is None:
+            return
+        uri = self._store.uri
+        path = Path(uri.removeprefix("sqlite:///"))
+        if uri.startswith("sqlite:///") and not path.is_file():
             # Creating it here could meet another process that does the same, and ruin it.
             log.warning("tracking: %s is gone; results are made without it", path)
             return
         try:
-            self._client = MlflowClient(self._uri)
+            self._client = MlflowClient(uri)
         except Exception as error:  # as above
             self._warn(error)
 

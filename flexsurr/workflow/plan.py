@@ -1,12 +1,13 @@
 """The jobs of a configuration: for each rule, exactly the values that what it makes depends on.
 
-A job is a dictionary that goes to its command as JSON. Snakemake runs a job again when its dictionary
-changes, so a value that is missing here is a stale result, and a value too many is a needless hour.
+A job is a dictionary that goes to its command in a JSON file (`job_files`). Snakemake runs a job again when
+its dictionary changes, so a value that is missing here is a stale result, and a value too many is a needless
+hour.
 """
 
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fnmatch import fnmatch
 from functools import cached_property
@@ -18,7 +19,7 @@ from flexsurr.config.part import values_of
 from flexsurr.config.settings import Configuration, ResolvedStudy
 from flexsurr.config.study import DEFAULT, Study, Variant
 from flexsurr.config.sweep import Trial
-from flexsurr.report.catalogue import FIGURES
+from flexsurr.report.catalogue import FIGURES, TABLES, Product
 from flexsurr.training.sweep import expand, run_id
 
 Job = dict[str, Any]
@@ -34,7 +35,7 @@ DATASET = (
     "dataset.initial_conditions",
     "dataset.integrator",
 )
-JUDGEMENT = (
+SCORE = (
     "seed",
     "reduction",
     "dataset.initial_conditions",
@@ -156,6 +157,7 @@ class Plan:
             "variant": _variant(data),
             "seed": settings.seed,
             "configuration": self.dataset_hash(study, data),
+            "shards": settings.dataset.shards,
             "trajectories": settings.dataset.trajectories,
             "training_fraction": settings.dataset.training_fraction,
         }
@@ -177,9 +179,10 @@ class Plan:
             "trial": trial,
         }
 
-    def judge(self, study: str) -> Job:
-        """Long responses of all runs of a study."""
-        return {**self._part(study, JUDGEMENT), "runs": self.runs_of(study)}
+    def score(self, key: str) -> Job:
+        """Held-out errors and long responses of one run."""
+        run = self.runs[key]
+        return {**self._part(run.study, SCORE), "variant": run.variant}
 
     def select(self, study: str) -> Job:
         """The choice among the runs of each sweep of a study."""
@@ -245,10 +248,23 @@ class Plan:
         structure = self.studies[study].structure
         return [name for name, figure in FIGURES.items() if figure.shows(structure)]
 
-    def draw(self, study: str, figures: Sequence[str], reads: Sequence[str]) -> Job:
-        """Figures that read the same."""
-        structure = self.studies[study].structure.model_dump(mode="json")
-        return {"figures": list(figures), **({"structure": structure} if "structure" in reads else {})}
+    def read_by(self, study: str, product: Product) -> list[str]:
+        """The files below the results that a figure or table of one study reads."""
+        return [file for read in product.reads for file in self.files(study, read)]
+
+    def draw(self, study: str, figure: str) -> Job:
+        """One figure."""
+        return {"figure": figure, **self._reads(study, FIGURES[figure])}
+
+    def tabulate(self, study: str, table: str) -> Job:
+        """One table."""
+        return {"table": table, **self._reads(study, TABLES[table])}
+
+    def _reads(self, study: str, product: Product) -> Job:
+        reads: Job = {"reads": {read: self.files(study, read) for read in product.reads}}
+        if "structure" in product.reads:
+            reads["structure"] = self.studies[study].structure.model_dump(mode="json")
+        return reads
 
     def _part(self, study: str, keys: tuple[str, ...]) -> Job:
         resolved = self.studies[study]

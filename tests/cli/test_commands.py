@@ -1,6 +1,5 @@
 """How commands end: well, with one line for what was to be expected, with a traceback for what was not."""
 
-import json
 import os
 import signal
 import subprocess
@@ -12,6 +11,7 @@ import pytest
 from flexsurr.cli import join, pages
 from flexsurr.config.settings import load
 from flexsurr.storage import read_shard
+from flexsurr.workflow.job_files import write_job
 from flexsurr.workflow.plan import Plan
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -42,13 +42,11 @@ def run(command: str, *arguments: str) -> subprocess.CompletedProcess:
 
 
 def test_a_shard_depends_on_its_number_alone(tmp_path):
-    """The second shard is the same whether or not there is a first, and however it is asked for."""
-    job = json.dumps(PLAN.simulate("cantilever", "hamiltonian", 1))
-    asked = tmp_path / "job.json"
-    asked.write_text(job)
+    """The second shard is the same whether or not there is a first, and however often it is made."""
+    job = write_job(tmp_path, "simulate", PLAN.simulate("cantilever", "hamiltonian", 1))
     paths = [tmp_path / "a.parquet", tmp_path / "b.parquet"]
-    for path, argument in zip(paths, (job, f"@{asked}"), strict=True):
-        done = run("simulate", "--job", argument, "--output", str(path))
+    for path in paths:
+        done = run("simulate", "--job", str(job), "--output", str(path))
         assert done.returncode == 0, done.stderr
     assert paths[0].read_bytes() == paths[1].read_bytes()
     shard = read_shard(paths[0])
@@ -59,10 +57,9 @@ def test_a_shard_depends_on_its_number_alone(tmp_path):
 def test_what_is_to_be_expected_is_one_line(tmp_path):
     rubbish = tmp_path / "shard-0000.parquet"
     rubbish.write_bytes(b"rubbish")
-    job = json.dumps(PLAN.manifest("cantilever", "hamiltonian"))
-    done = run(
-        "manifest", "--job", job, "--shards", str(rubbish), "--output", str(tmp_path / "manifest.json")
-    )
+    job = write_job(tmp_path, "manifest", PLAN.manifest("cantilever", "hamiltonian") | {"shards": 1})
+    output = tmp_path / "manifest.json"
+    done = run("manifest", "--job", str(job), "--folder", str(tmp_path), "--output", str(output))
     assert done.returncode == 1
     assert done.stderr.startswith(f"flexsurr.cli.manifest: {rubbish}: damaged or truncated")
     assert len(done.stderr.splitlines()) == 1
@@ -70,24 +67,28 @@ def test_what_is_to_be_expected_is_one_line(tmp_path):
 
 
 def test_what_is_not_to_be_expected_leaves_its_traceback(tmp_path):
-    done = run("manifest", "--job", "{}", "--shards", "x", "--output", str(tmp_path / "manifest.json"))
+    job = write_job(tmp_path, "manifest", {})
+    done = run("manifest", "--job", str(job), "--folder", "x", "--output", str(tmp_path / "manifest.json"))
     assert done.returncode == 1
     assert "Traceback" in done.stderr
-    assert "TypeError" in done.stderr
+    assert "KeyError" in done.stderr
 
 
-@pytest.mark.parametrize("job", ["{", "[]", "@absent.json"])
-def test_what_is_no_job_is_refused(job):
-    done = run("manifest", "--job", job, "--shards", "x", "--output", "y")
+@pytest.mark.parametrize("content", ["{", "[]", None])
+def test_what_is_no_job_is_refused(tmp_path, content):
+    job = tmp_path / "job.json"
+    if content is not None:
+        job.write_text(content)
+    done = run("manifest", "--job", str(job), "--folder", "x", "--output", "y")
     assert done.returncode == 2
     assert "is no job" in done.stderr
     assert "Traceback" not in done.stderr
 
 
 @pytest.mark.parametrize(("sent", "code"), [(signal.SIGTERM, 143), (signal.SIGINT, 130)])
-def test_a_command_told_to_stop_closes_what_is_open(sent, code):
+def test_a_command_told_to_stop_closes_what_is_open(tmp_path, sent, code):
     with subprocess.Popen(
-        [sys.executable, "-c", SLEEPER, "--job", "{}"],
+        [sys.executable, "-c", SLEEPER, "--job", write_job(tmp_path, "sleep", {})],
         cwd=REPOSITORY,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -108,7 +109,7 @@ def test_simulating_needs_neither_torch_nor_mlflow_nor_matplotlib():
     assert done.stdout.strip() == "set()", done.stderr
 
 
-@pytest.mark.parametrize("module", ["cli.tables", "cli.join", "cli.pages", "workflow.plan"])
+@pytest.mark.parametrize("module", ["cli.tabulate", "cli.join", "cli.pages", "workflow.plan"])
 def test_tables_and_plans_need_neither_kernels_nor_figures(module):
     heavy = {"numba", "scipy", "matplotlib", "torch", "mlflow"}
     code = f"import sys, flexsurr.{module}; print({heavy} & set(sys.modules))"

@@ -84,9 +84,9 @@ def test_a_missing_module_is_named(root):
         ("simulate", "flexsurr.beam.compiled", "flexsurr.training"),
         ("manifest", "flexsurr.storage.manifest", "flexsurr.beam"),
         ("train", "flexsurr.training.tracking", "flexsurr.evaluation"),
-        ("judge", "flexsurr.evaluation.selection", "flexsurr.report"),
+        ("score", "flexsurr.evaluation.selection", "flexsurr.report"),
         ("select", "flexsurr.training.selection", "flexsurr.evaluation"),
-        ("figures", "flexsurr.report.style", "flexsurr.training"),
+        ("draw", "flexsurr.report.style", "flexsurr.training"),
     ],
 )
 def test_the_commands_depend_on_what_they_use(command, needs, does_without):

@@ -30,9 +30,10 @@ def plan(root: Path) -> Plan:
 def jobs(root: Path) -> dict[str, str]:
     """Every job of the quick preset as text, by rule and wildcards."""
     p = plan(root)
-    found = {"store": p.store(), f"judge {BEAM}": p.judge(BEAM), f"select {BEAM}": p.select(BEAM)}
+    found = {"store": p.store(), f"select {BEAM}": p.select(BEAM)}
     found |= {f"statics {BEAM}": p.statics(BEAM), f"validation {BEAM}": p.validation(BEAM)}
     found |= {f"train {key}": p.train(key) for key in p.runs}
+    found |= {f"score {key}": p.score(key) for key in p.runs}
     for variant in p.variants(BEAM):
         found[f"manifest {variant}"] = p.manifest(BEAM, variant)
         found[f"respond {variant}"] = p.respond(BEAM, variant)
@@ -54,28 +55,28 @@ def change(root: Path, file: str, keys: str, value: object) -> None:
 
 
 ALL_DATA = {"simulate", "manifest"}
-JUDGED = {"judge", "respond", "cost"}
+SCORED = {"score", "respond", "cost"}
 OVER = f"overrides.{BEAM}"
 
 CHANGES = [
-    (STRUCTURE, "length_m", 1.1, ALL_DATA | JUDGED | {"statics", "validation"}),
-    (STUDY, "seed", 7, ALL_DATA | JUDGED),
+    (STRUCTURE, "length_m", 1.1, ALL_DATA | SCORED | {"statics", "validation"}),
+    (STUDY, "seed", 7, ALL_DATA | SCORED),
     (STUDY, "dataset.step_s", 0.002, ALL_DATA),
     (STUDY, "dataset.training_fraction", 0.7, {"manifest"}),
-    (STUDY, "dataset.initial_conditions.q_max_deg", 10.0, ALL_DATA | JUDGED),
+    (STUDY, "dataset.initial_conditions.q_max_deg", 10.0, ALL_DATA | SCORED),
     (STUDY, "evaluation.force.amplitude_N", 5.0, {"validation", "respond", "cost"}),
-    (QUICK, f"{OVER}.evaluation.judging_integrator", {"method": "dop853"}, {"judge"}),
+    (QUICK, f"{OVER}.evaluation.judging_integrator", {"method": "dop853"}, {"score"}),
     (QUICK, f"{OVER}.evaluation.drawing_integrator", {"method": "radau_iia_5"}, {"respond"}),
-    (QUICK, f"{OVER}.evaluation.reference_integrator", {"method": "radau_iia_5"}, JUDGED),
+    (QUICK, f"{OVER}.evaluation.reference_integrator", {"method": "radau_iia_5"}, SCORED),
     (STUDY, "frequencies_also_of", ["config/structures/wing.yaml"], {"statics"}),
     (QUICK, f"{OVER}.dataset.trajectories", 9, {"manifest", "simulate"}),
     (QUICK, f"{OVER}.evaluation.repeats", 2, {"cost"}),
     (QUICK, f"{OVER}.evaluation.described_simulations.as_printed", 2, {"cost"}),
     (QUICK, f"{OVER}.evaluation.simulations", 3, {"respond", "cost"}),
-    (QUICK, f"{OVER}.evaluation.long_responses", 3, {"judge"}),
-    (QUICK, f"{OVER}.evaluation.duration_s", 0.3, JUDGED),
+    (QUICK, f"{OVER}.evaluation.long_responses", 3, {"score"}),
+    (QUICK, f"{OVER}.evaluation.duration_s", 0.3, SCORED),
     (QUICK, f"{OVER}.statics.tip_loads_N", [0, 10], {"statics"}),
-    (SWEEP, "spaces.0.epochs", [21], {"train", "judge", "select"}),
+    (SWEEP, "spaces.0.epochs", [21], {"train", "score", "select"}),
     ("config/config.yaml", "tracking.uri", "http://127.0.0.1:5000", {"store"}),
     ("config/config.yaml", "timing.cores", 1, set()),
     ("config/config.yaml", "results", "elsewhere", set()),
@@ -106,12 +107,8 @@ def test_a_new_value_of_the_sweep_adds_its_runs_and_leaves_the_others(root):
     change(root, SWEEP, "spaces.0.hidden", [[8], [9]])
     after = jobs(root)
     added = after.keys() - before.keys()
-    assert len(added) == 2
-    assert all(name.startswith("train hnn-") for name in added)
-    assert {name for name in before if before[name] != after[name]} == {
-        f"judge {BEAM}",
-        f"select {BEAM}",
-    }
+    assert sorted(name.split("-")[0] for name in added) == ["score hnn"] * 2 + ["train hnn"] * 2
+    assert {name for name in before if before[name] != after[name]} == {f"select {BEAM}"}
 
 
 def test_a_run_is_named_by_its_content(root):
@@ -130,10 +127,7 @@ def test_a_further_dataset_is_drawn_by_its_own_seed_and_trained_on_by_the_sweep_
     change(root, STUDY, "sweeps.many", SWEEP)
     change(root, STUDY, "trains_on.many", "many")
     p = plan(root)
-    assert {name for name in before if before[name] != jobs(root)[name]} == {
-        f"judge {BEAM}",
-        f"select {BEAM}",
-    }
+    assert {name for name in before if before[name] != jobs(root)[name]} == {f"select {BEAM}"}
     assert len(p.runs_of(BEAM)) == 2 * len(p.select(BEAM)["sweeps"]["default"])
     assert {p.runs[key].data for key in p.select(BEAM)["sweeps"]["many"]} == {
         "hamiltonian-many",

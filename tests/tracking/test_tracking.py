@@ -191,3 +191,14 @@ def test_a_database_that_loses_its_tables_half_way_is_a_warning(tmp_path, caplog
         trial.epoch(0, 1.0, 1.0)
         trial.send()
     assert "results are made without it" in caplog.text
+
+
+def test_a_store_out_of_reach_is_a_warning(tmp_path, caplog):
+    with caplog.at_level(logging.WARNING):
+        assert create_store("http://127.0.0.1:9", tmp_path, ["cantilever"]) is None
+        assert read_store(tmp_path / "store.json") is None
+    assert caplog.text.count("results are made without it") == 2
+    with tracked(None, "cantilever", "hnn-1", {}) as trial:
+        trial.epoch(0, 1.0, 1.0)
+        trial.keep({"train_nmse": 1.0}, {}, [])
+    end_sweep(None, "cantilever", {})

@@ -1,30 +1,38 @@
 """After a change, exactly what depends on it is made again."""
 
 import shutil
+from pathlib import Path
 
 import pytest
+from project import CONFIGURATION
 
+from flexsurr.config.settings import load
+from flexsurr.report.catalogue import FIGURES, TABLES
+from flexsurr.workflow.plan import Plan
+
+REPOSITORY = Path(__file__).resolve().parents[2]
 BEAM = "cantilever"
 OVER = f"overrides.{BEAM}"
 QUICK = "config/presets/quick.yaml"
 SWEEP = "config/sweeps/quick.yaml"
 
-EVALUATED = {"responses": 2, "evaluate": 4}
-DRAWN_FROM_RESPONSES = {f"draw_{BEAM}_figure_{number}": 1 for number in (10, 12, 13)}
-DRAWN_FROM_COSTS = {f"draw_{BEAM}_cost_accuracy": 1, f"tabulate_{BEAM}_cost": 1, "join": 1}
-DRAWN_FROM_RUNS = {
-    f"draw_{BEAM}_training_loss_training_epochs": 1,
-    f"tabulate_{BEAM}_training_architectures_seeds": 1,
-    "join": 1,
-}
-SELECTED = {
-    f"judge_{BEAM}": 1,
-    "select": 1,
-    **EVALUATED,
-    **DRAWN_FROM_RESPONSES,
-    **DRAWN_FROM_COSTS,
-    **DRAWN_FROM_RUNS,
-}
+PLAN = Plan(load(REPOSITORY, CONFIGURATION))
+
+
+def products_of(*reads: str) -> dict[str, int]:
+    """How many figures and tables of the beam show any of what they `read`; the tables are then joined."""
+    figures = [FIGURES[name] for name in PLAN.figures(BEAM)]
+    drawn, tabulated = (
+        sum(not set(reads).isdisjoint(product.reads) for product in products)
+        for products in (figures, TABLES.values())
+    )
+    return {name: count for name, count in (("draw", drawn), ("tabulate", tabulated), ("join", 1)) if count}
+
+
+RUNS = ("metrics", "relatives", "history")
+COSTS = ("cost-*-*",)
+RESPONSES = ("response-*-free", "response-*-forced", "energy-*")
+SELECTED = {"select": 1, "responses": 2, "evaluate": 4, **products_of(*RUNS, *COSTS, *RESPONSES)}
 FLOWN = {
     "select_coefficients": 1,
     "fly": 1,
@@ -33,27 +41,29 @@ FLOWN = {
     "show_airliner": 1,
     "join": 1,
 }
-LEARNT = {"manifest": 2, "train": 6, "learn_load": 2, f"tabulate_{BEAM}_learned_loads": 1, **SELECTED}
+LEARNT = {
+    "manifest": 2,
+    "train": 6,
+    "score": 6,
+    "learn_load": 2,
+    **SELECTED,
+    **products_of(*RUNS, *COSTS, *RESPONSES, "learned_loads-*"),
+}
 
 
 @pytest.mark.parametrize(
     ("file", "keys", "value", "jobs"),
     [
-        (SWEEP, "spaces.0.epochs", [21], {"train": 2, **SELECTED}),
-        (SWEEP, "spaces.1.hidden", [[8], [4]], {"train": 2, **SELECTED}),
-        (QUICK, f"{OVER}.dataset.trajectories", 9, {"simulate_shard": 2, **LEARNT}),
-        (QUICK, f"{OVER}.evaluation.repeats", 2, {"evaluate": 4, **DRAWN_FROM_COSTS}),
-        (QUICK, f"{OVER}.evaluation.long_responses", 3, SELECTED),
+        (SWEEP, "spaces.0.epochs", [21], {"train": 2, "score": 2, **SELECTED}),
+        (SWEEP, "spaces.1.hidden", [[8], [4]], {"train": 2, "score": 2, **SELECTED}),
+        (QUICK, f"{OVER}.dataset.trajectories", 9, {"simulate": 2, **LEARNT}),
+        (QUICK, f"{OVER}.evaluation.repeats", 2, {"evaluate": 4, **products_of(*COSTS)}),
+        (QUICK, f"{OVER}.evaluation.long_responses", 3, {"score": 6, **SELECTED}),
         (
             QUICK,
             f"{OVER}.statics.tip_loads_N",
             [0, 10],
-            {
-                "statics": 1,
-                f"draw_{BEAM}_figure_08": 1,
-                **{f"tabulate_{BEAM}_{name}": 1 for name in ("static_tip", "natural_frequencies")},
-                "join": 1,
-            },
+            {"statics": 1, **products_of("statics", "frequencies")},
         ),
         (
             "config/sweeps/airliner_quick.yaml",
@@ -61,7 +71,7 @@ LEARNT = {"manifest": 2, "train": 6, "learn_load": 2, f"tabulate_{BEAM}_learned_
             [6],
             {"train_coefficients": 1, **FLOWN},
         ),
-        ("config/config.yaml", "tracking.uri", "http://127.0.0.1:9", {"tracking_store": 1}),
+        ("config/config.yaml", "tracking.uri", "http://127.0.0.1:9", {}),
         ("config/config.yaml", "timing.cores", 1, {}),
     ],
 )
@@ -75,28 +85,28 @@ def test_changing_a_value(copy_of_quick, file, keys, value, jobs):
     [
         (
             "flexsurr/beam/compiled.py",
-            {"simulate_shard", "statics", "validation", "manifest", "train", "responses", "evaluate"},
-            {"tracking_store"},
+            {"simulate", "statics", "validation", "manifest", "train", "responses", "evaluate"},
+            {"select_coefficients"},
         ),
         (
             "flexsurr/evaluation/timing.py",
             {"evaluate", "join"},
-            {"simulate_shard", "manifest", "train", "statics", f"draw_{BEAM}_figure_10"},
+            {"simulate", "manifest", "train", "statics"},
         ),
         (
             "flexsurr/storage/moments.py",
             {"manifest", "train"},
-            {"simulate_shard", "statics", "validation"},
+            {"simulate", "statics", "validation"},
         ),
         (
             "flexsurr/report/style.py",
-            {f"draw_{BEAM}_figure_10", f"draw_{BEAM}_cost_accuracy"},
-            {"simulate_shard", "train", "evaluate", "responses", "statics", f"judge_{BEAM}", "select"},
+            {"draw"},
+            {"simulate", "train", "evaluate", "responses", "statics", "score", "select"},
         ),
         (
             "flexsurr/workflow/plan.py",
             set(),
-            {"simulate_shard", "train", "evaluate", f"judge_{BEAM}", "select"},
+            {"simulate", "train", "evaluate", "score", "select"},
         ),
     ],
 )
@@ -115,3 +125,22 @@ def test_a_deleted_tracking_store_brings_nothing_back(copy_of_quick):
     for path in (copy_of_quick.results / "mlflow").glob("mlflow.db*"):
         path.unlink()
     assert copy_of_quick.scheduled() == {}
+
+
+@pytest.mark.parametrize("uri", [None, "http://127.0.0.1:9"])
+def test_a_study_that_is_added_is_built_at_once(copy_of_quick, uri):
+    copy_of_quick.change("config/config.yaml", "studies", [BEAM, "wing", "wing_unit"])
+    copy_of_quick.change("config/config.yaml", "tracking.uri", uri)
+    scheduled = copy_of_quick.scheduled()
+    added = copy_of_quick.plan
+    assert scheduled["train"] == len(added.runs_of("wing_unit"))
+    assert scheduled["evaluate"] == 2 * len(added.variants("wing_unit"))
+    assert scheduled["join"] == 1
+
+
+def test_without_a_store_results_are_made_all_the_same(copy_of_quick):
+    copy_of_quick.change("config/config.yaml", "tracking.uri", "http://127.0.0.1:9")
+    copy_of_quick.change(SWEEP, "spaces.1.hidden", [[4]])
+    output = copy_of_quick.run_well(f"results/selected/{BEAM}.json")
+    assert "results are made without it" in output
+    assert copy_of_quick.scheduled(f"results/selected/{BEAM}.json") == {}

@@ -88,7 +88,7 @@ def test_the_dataset_is_whole_and_split_by_trajectory(quick):
         assert len(set(q0)) == 6
 
 
-def test_every_run_is_recorded_and_judged(quick):
+def test_every_run_is_recorded_and_scored(quick):
     runs = quick.plan.runs
     of_the_airliner = AirlinerPlan.load(quick.root, quick.plan.settings.airliner).runs
     assert {path.name for path in (quick.results / "runs").iterdir()} == {*runs, *of_the_airliner}
@@ -113,8 +113,8 @@ def test_one_surrogate_of_each_architecture_is_selected(quick):
 
 def test_every_rule_leaves_a_log(quick):
     logs = {path.relative_to(quick.results / "logs").parts[0] for path in quick.results.glob("logs/**/*.log")}
-    assert {"simulate", "manifest", "statics", "validation", "train", "judge", "select"} <= logs
-    assert {"evaluate", "responses", "figures", "tables", "tracking_store.log"} <= logs
+    assert {"simulate", "manifest", "statics", "validation", "train", "score", "select"} <= logs
+    assert {"evaluate", "responses", "draw", "tabulate"} <= logs
 
 
 def test_nothing_half_written_is_left(quick):

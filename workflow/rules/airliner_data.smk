@@ -18,10 +18,19 @@ rule sample_aerodynamics:
         f"{RESULTS}/datasets/airliner/{{sampling}}/shard-{{shard}}.parquet",
     log:
         f"{RESULTS}/logs/sample_aerodynamics/{{sampling}}-{{shard}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/sample_aerodynamics/{{sampling}}-{{shard}}.tsv"
     wildcard_constraints:
         sampling="pseudo_random|sobol",
+    threads: 1
+    resources:
+        mem_mb=2000,
+        runtime=60,
     params:
-        job=lambda w: json.dumps(airliner.sample(w.sampling, w.shard), sort_keys=True),
+        job=lambda w: write(
+            f"sample_aerodynamics/{w.sampling}-{w.shard}",
+            airliner.sample(w.sampling, w.shard),
+        ),
         code=code("sample_aerodynamics"),
     message:
         "sampling the airliner's aerodynamics, {wildcards.sampling}, shard {wildcards.shard}"
@@ -31,13 +40,11 @@ rule sample_aerodynamics:
 
 
 rule train_coefficients:
-    # The store is ancient: a new one is no reason to train anew.
     input:
         shards=lambda w: expand(
             f"{RESULTS}/datasets/airliner/{airliner.runs[w.run_id].sampling}/shard-{{shard:04d}}.parquet",
             shard=range(airliner.shards),
         ),
-        store=ancient(rules.tracking_store.output[0]),
     output:
         parameters=f"{RESULTS}/runs/{{run_id}}/parameters.json",
         metrics=f"{RESULTS}/runs/{{run_id}}/metrics.json",
@@ -45,17 +52,24 @@ rule train_coefficients:
         errors=f"{RESULTS}/runs/{{run_id}}/errors.parquet",
     log:
         f"{RESULTS}/logs/train/{{run_id}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/train_coefficients/{{run_id}}.tsv"
     wildcard_constraints:
         run_id="airliner-.*",
+    threads: 1
+    resources:
+        mem_mb=3000,
+        runtime=240,
     params:
-        job=lambda w: json.dumps(airliner.train(w.run_id), sort_keys=True),
+        job=lambda w: write(f"train/{w.run_id}", airliner.train(w.run_id)),
         code=code("train_coefficients"),
         folder=f"{RESULTS}/runs/{{run_id}}",
+        store=STORE,
     message:
         "training {wildcards.run_id}"
     shell:
         "python -m flexsurr.cli.train_coefficients --job {params.job:q} --shards {input.shards:q}"
-        " --store {input.store:q} --folder {params.folder:q} > {log:q} 2>&1"
+        " --store {params.store:q} --folder {params.folder:q} > {log:q} 2>&1"
 
 
 rule select_coefficients:
@@ -64,18 +78,24 @@ rule select_coefficients:
         accuracy=expand(
             f"{RESULTS}/runs/{{run_id}}/accuracy.parquet", run_id=airliner.runs
         ),
-        store=ancient(rules.tracking_store.output[0]),
     output:
         selection=f"{RESULTS}/selected/airliner.json",
         table=f"{RESULTS}/tables/airliner_accuracy.csv",
     log:
         f"{RESULTS}/logs/select/airliner.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/select_coefficients/airliner.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=30,
     params:
-        job=json.dumps(airliner.select(), sort_keys=True),
+        job=lambda w: write("select/airliner", airliner.select()),
         code=code("select_coefficients"),
         runs=f"{RESULTS}/runs",
+        store=STORE,
     message:
         "choosing the network that the airliner flies with"
     shell:
         "python -m flexsurr.cli.select_coefficients --job {params.job:q} --runs {params.runs:q}"
-        " --store {input.store:q} --output {output.selection:q} --table {output.table:q} > {log:q} 2>&1"
+        " --store {params.store:q} --output {output.selection:q} --table {output.table:q} > {log:q} 2>&1"

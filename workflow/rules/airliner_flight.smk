@@ -19,7 +19,11 @@ AIRLINER_TABLES = {
     "airliner_cost": "Cost of ninety flights",
     "airliner_limits": "States beyond the network's limits",
 }
-AIRLINER_FLIGHT = json.dumps(flight_job(airliner.airliner), sort_keys=True)
+
+
+def flight(wildcards):
+    """The file that holds the values of every job that flies the airliner."""
+    return write("fly/airliner", flight_job(airliner.airliner))
 
 
 rule fly:
@@ -33,8 +37,14 @@ rule fly:
         trims=f"{RESULTS}/evaluation/airliner/trims.parquet",
     log:
         f"{RESULTS}/logs/fly/airliner.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/fly/airliner.tsv"
+    threads: 1
+    resources:
+        mem_mb=2000,
+        runtime=60,
     params:
-        job=AIRLINER_FLIGHT,
+        job=flight,
         code=code("fly"),
         runs=f"{RESULTS}/runs",
     message:
@@ -57,9 +67,14 @@ rule fly_randomly:
         limits=f"{RESULTS}/tables/airliner_limits.csv",
     log:
         f"{RESULTS}/logs/fly_randomly/airliner.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/fly_randomly/airliner.tsv"
     threads: plan.settings.timing.cores or workflow.cores or 1
+    resources:
+        mem_mb=3000,
+        runtime=240,
     params:
-        job=AIRLINER_FLIGHT,
+        job=flight,
         code=code("fly_randomly"),
         runs=f"{RESULTS}/runs",
     message:
@@ -89,8 +104,14 @@ rule draw_airliner:
         *(f"{RESULTS}/figures/airliner/{name}.png" for name in AIRLINER_FIGURES),
     log:
         f"{RESULTS}/logs/figures/airliner.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/draw_airliner/airliner.tsv"
+    threads: 1
+    resources:
+        mem_mb=2000,
+        runtime=30,
     params:
-        job=AIRLINER_FLIGHT,
+        job=flight,
         code=code("draw_airliner"),
         runs=f"{RESULTS}/runs",
         folder=f"{RESULTS}/figures/airliner",
@@ -122,8 +143,16 @@ rule show_airliner:
         ),
     log:
         f"{RESULTS}/logs/tables/airliner.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/show_airliner/airliner.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=30,
     params:
-        job=json.dumps({"titles": list(AIRLINER_TABLES.values())}),
+        job=lambda w: write(
+            "pages/airliner", {"titles": list(AIRLINER_TABLES.values())}
+        ),
         code=code("pages"),
         folder=f"{RESULTS}/tables/airliner",
     message:

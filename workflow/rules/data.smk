@@ -7,13 +7,21 @@ wildcard_constraints:
     data=r"(hamiltonian|as_printed)(-\w+)?",
     response="free|forced",
     shard=r"\d+",
+    figure="[a-z0-9_]+",
+    table="[a-z0-9_]+",
 
 
-rule simulate_shard:
+rule simulate:
     output:
         f"{RESULTS}/datasets/{{study}}/{{data}}/shard-{{shard}}.parquet",
     log:
         f"{RESULTS}/logs/simulate/{{study}}-{{data}}-{{shard}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/simulate/{{study}}-{{data}}-{{shard}}.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=60,
     params:
         job=job("simulate", "study", "data", "shard"),
         code=code("simulate"),
@@ -33,13 +41,20 @@ rule manifest:
         f"{RESULTS}/datasets/{{study}}/{{data}}/manifest.json",
     log:
         f"{RESULTS}/logs/manifest/{{study}}-{{data}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/manifest/{{study}}-{{data}}.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=30,
     params:
         job=job("manifest", "study", "data"),
         code=code("manifest"),
+        folder=lambda w, output: os.path.dirname(output[0]),
     message:
         "checking the dataset of {wildcards.study}, {wildcards.data}"
     shell:
-        "python -m flexsurr.cli.manifest --job {params.job:q} --shards {input.shards:q} --output {output:q}"
+        "python -m flexsurr.cli.manifest --job {params.job:q} --folder {params.folder:q} --output {output:q}"
         " > {log:q} 2>&1"
 
 
@@ -49,6 +64,12 @@ rule statics:
         frequencies=f"{RESULTS}/evaluation/{{study}}/frequencies.parquet",
     log:
         f"{RESULTS}/logs/statics/{{study}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/statics/{{study}}.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=30,
     params:
         job=job("statics", "study"),
         code=code("statics"),
@@ -64,6 +85,12 @@ rule validation:
         f"{RESULTS}/evaluation/{{study}}/validation.parquet",
     log:
         f"{RESULTS}/logs/validation/{{study}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/validation/{{study}}.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=30,
     params:
         job=job("validation", "study"),
         code=code("validate"),

@@ -10,6 +10,12 @@ rule responses:
         energy=f"{RESULTS}/evaluation/{{study}}/energy-{{variant}}.parquet",
     log:
         f"{RESULTS}/logs/responses/{{study}}-{{variant}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/responses/{{study}}-{{variant}}.tsv"
+    threads: 1
+    resources:
+        mem_mb=2000,
+        runtime=60,
     params:
         job=job("respond", "study", "variant"),
         code=code("respond"),
@@ -33,6 +39,12 @@ rule learn_load:
         errors=f"{RESULTS}/evaluation/{{study}}/learned_loads-{{variant}}.parquet",
     log:
         f"{RESULTS}/logs/learn_load/{{study}}-{{variant}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/learn_load/{{study}}-{{variant}}.tsv"
+    threads: 1
+    resources:
+        mem_mb=4000,
+        runtime=60,
     params:
         job=job("learn_load", "study", "variant"),
         code=code("learn_load"),
@@ -57,7 +69,12 @@ rule evaluate:
         f"{RESULTS}/evaluation/{{study}}/cost-{{variant}}-{{response}}.parquet",
     log:
         f"{RESULTS}/logs/evaluate/{{study}}-{{variant}}-{{response}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/evaluate/{{study}}-{{variant}}-{{response}}.tsv"
     threads: plan.settings.timing.cores or workflow.cores or 1
+    resources:
+        mem_mb=2000,
+        runtime=240,
     params:
         job=job("cost", "study", "variant", "response"),
         code=code("evaluate"),

@@ -1,27 +1,21 @@
-# Surrogates: one job a trial, then the choice among them.
+# Surrogates: one job a trial, its score, then the choice among them.
+
+# Runs are recorded here for the page on which they are compared. It is no input of any job: an address
+# decides nothing, and Snakemake passes over whatever depends on an `ancient` file that it makes again.
+STORE = f"{RESULTS}/mlflow/store.json"
 
 
-rule tracking_store:
-    # Two processes that create the store at once ruin it: this job comes before any that writes to it.
-    output:
-        f"{RESULTS}/mlflow/store.json",
-    log:
-        f"{RESULTS}/logs/tracking_store.log",
-    params:
-        job=job("store"),
-    message:
-        "creating the tracking store"
-    shell:
-        "python -m flexsurr.cli.store --job {params.job:q} --output {output:q} > {log:q} 2>&1"
+onstart:
+    # Two processes that create the store at once ruin it: it is there before the first job.
+    tracked = write("store", plan.store())
+    shell("python -m flexsurr.cli.store --job {tracked:q} --output {STORE:q}")
 
 
 rule train:
-    # The store is ancient: a new one is no reason to train anew.
     input:
         manifest=lambda w: (
             f"{RESULTS}/datasets/{plan.runs[w.run_id].study}/{plan.runs[w.run_id].data}/manifest.json"
         ),
-        store=ancient(rules.tracking_store.output[0]),
     output:
         parameters=f"{RESULTS}/runs/{{run_id}}/parameters.json",
         weights=f"{RESULTS}/runs/{{run_id}}/weights.npz",
@@ -29,48 +23,49 @@ rule train:
         fit=f"{RESULTS}/runs/{{run_id}}/fit.json",
     log:
         f"{RESULTS}/logs/train/{{run_id}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/train/{{run_id}}.tsv"
+    threads: 1
+    resources:
+        mem_mb=3000,
+        runtime=720,
     params:
         job=job("train", "run_id"),
         code=code("train"),
         folder=f"{RESULTS}/runs/{{run_id}}",
+        store=STORE,
     message:
         "training {wildcards.run_id}"
     shell:
         "python -m flexsurr.cli.train --job {params.job:q} --manifest {input.manifest:q}"
-        " --store {input.store:q} --folder {params.folder:q} > {log:q} 2>&1"
+        " --store {params.store:q} --folder {params.folder:q} > {log:q} 2>&1"
 
 
-for study in STUDIES:
-
-    rule:
-        name:
-            f"judge_{study}"
-        input:
-            fits=expand(
-                f"{RESULTS}/runs/{{run_id}}/fit.json", run_id=plan.runs_of(study)
-            ),
-            weights=expand(
-                f"{RESULTS}/runs/{{run_id}}/weights.npz", run_id=plan.runs_of(study)
-            ),
-            manifests=expand(
-                f"{RESULTS}/datasets/{study}/{{variant}}/manifest.json",
-                variant=plan.variants(study),
-            ),
-        output:
-            expand(
-                f"{RESULTS}/runs/{{run_id}}/metrics.json", run_id=plan.runs_of(study)
-            ),
-        log:
-            f"{RESULTS}/logs/judge/{study}.log",
-        params:
-            job=json.dumps(plan.judge(study), sort_keys=True),
-            code=code("judge"),
-            runs=f"{RESULTS}/runs",
-        message:
-            f"judging the surrogates of {study}"
-        shell:
-            "python -m flexsurr.cli.judge --job {params.job:q} --runs {params.runs:q}"
-            " --manifests {input.manifests:q} > {log:q} 2>&1"
+rule score:
+    input:
+        fit=rules.train.output.fit,
+        weights=rules.train.output.weights,
+        manifest=lambda w: (
+            f"{RESULTS}/datasets/{plan.runs[w.run_id].study}/{plan.runs[w.run_id].variant}/manifest.json"
+        ),
+    output:
+        f"{RESULTS}/runs/{{run_id}}/metrics.json",
+    log:
+        f"{RESULTS}/logs/score/{{run_id}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/score/{{run_id}}.tsv"
+    threads: 1
+    resources:
+        mem_mb=2000,
+        runtime=60,
+    params:
+        job=job("score", "run_id"),
+        code=code("score"),
+    message:
+        "scoring {wildcards.run_id}"
+    shell:
+        "python -m flexsurr.cli.score --job {params.job:q} --fit {input.fit:q} --weights {input.weights:q}"
+        " --manifest {input.manifest:q} --output {output:q} > {log:q} 2>&1"
 
 
 rule select:
@@ -78,17 +73,23 @@ rule select:
         metrics=lambda w: expand(
             f"{RESULTS}/runs/{{run_id}}/metrics.json", run_id=plan.runs_of(w.study)
         ),
-        store=ancient(rules.tracking_store.output[0]),
     output:
         f"{RESULTS}/selected/{{study}}.json",
     log:
         f"{RESULTS}/logs/select/{{study}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/select/{{study}}.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=30,
     params:
         job=job("select", "study"),
         code=code("select"),
         runs=f"{RESULTS}/runs",
+        store=STORE,
     message:
         "choosing the surrogates of {wildcards.study}"
     shell:
         "python -m flexsurr.cli.select --job {params.job:q} --runs {params.runs:q}"
-        " --store {input.store:q} --output {output:q} > {log:q} 2>&1"
+        " --store {params.store:q} --output {output:q} > {log:q} 2>&1"

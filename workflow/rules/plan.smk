@@ -10,6 +10,7 @@ from snakemake.exceptions import WorkflowError
 from flexsurr.config.errors import ConfigurationError
 from flexsurr.config.settings import load
 from flexsurr.workflow.code_digest import code_digest
+from flexsurr.workflow.job_files import job_file, write_job
 from flexsurr.workflow.plan import Plan
 
 # Times are compared with one another: one thread a process, whatever the machine.
@@ -39,11 +40,20 @@ STUDIES = list(plan.studies)
 AIRLINER = plan.settings.airliner is not None
 
 
+def write(name, job):
+    """The file that holds the values of the job `name`: a command depends on them, and on nothing else."""
+    make = job_file if workflow.dryrun else write_job
+    return str(make(Path(RESULTS) / "jobs", name, job))
+
+
 def job(rule, *keys):
-    """A function of wildcards that gives the job of `rule` as JSON: what it depends on, and nothing else."""
-    return lambda wildcards: json.dumps(
-        getattr(plan, rule)(*(wildcards[key] for key in keys)), sort_keys=True
-    )
+    """A function of wildcards that gives the file of the job of `rule`."""
+
+    def path(wildcards):
+        values = [wildcards[key] for key in keys]
+        return write("/".join([rule, "-".join(values)]), getattr(plan, rule)(*values))
+
+    return path
 
 
 def code(command):

@@ -1,83 +1,83 @@
 # Figures and tables, each with a caption that says what to see.
 
-from flexsurr.report.catalogue import FIGURES, TABLES, by_reads
+from flexsurr.report.catalogue import FIGURES, TABLES
 
-for study in STUDIES:
-    for reads, same in by_reads(
-        {name: FIGURES[name] for name in plan.figures(study)}
-    ).items():
 
-        rule:
-            name:
-                f"draw_{study}_{'_'.join(same)}"
-            input:
-                [
-                    f"{RESULTS}/{file}"
-                    for read in reads
-                    for file in plan.files(study, read)
-                ],
-            output:
-                *(
-                    report(
-                        f"{RESULTS}/figures/{study}/{name}.svg",
-                        caption=f"../report/{name}.rst",
-                        category=study,
-                        subcategory="figures",
-                        labels={"figure": name, "shows": FIGURES[name].title},
-                    )
-                    for name in same
-                ),
-                *(f"{RESULTS}/figures/{study}/{name}.png" for name in same),
-            log:
-                f"{RESULTS}/logs/figures/{study}-{'-'.join(same)}.log",
-            params:
-                job=json.dumps(plan.draw(study, same, reads), sort_keys=True),
-                code=code("figures"),
-                folder=f"{RESULTS}/figures/{study}",
-            message:
-                f"drawing {', '.join(same)} of {study}"
-            shell:
-                "python -m flexsurr.cli.figures --job {params.job:q} --inputs {input:q}"
-                " --folder {params.folder:q} > {log:q} 2>&1"
+def caption_file(name):
+    """The file that says what to see in the figure or table `name`."""
+    return os.path.relpath(f"{workflow.basedir}/workflow/report/{name}.rst")
 
-    for reads, same in by_reads(TABLES).items():
 
-        rule:
-            name:
-                f"tabulate_{study}_{'_'.join(same)}"
-            input:
-                files=[
-                    f"{RESULTS}/{file}"
-                    for read in reads
-                    for file in plan.files(study, read)
-                ],
-                captions=[
-                    os.path.relpath(f"{workflow.basedir}/workflow/report/{name}.rst")
-                    for name in same
-                ],
-            output:
-                expand(f"{RESULTS}/tables/{study}/{{name}}.csv", name=same),
-                *(
-                    report(
-                        f"{RESULTS}/tables/{study}/{name}.html",
-                        caption=f"../report/{name}.rst",
-                        category=study,
-                        subcategory="tables",
-                        labels={"table": name, "shows": TABLES[name].title},
-                    )
-                    for name in same
-                ),
-            log:
-                f"{RESULTS}/logs/tables/{study}-{'-'.join(same)}.log",
-            params:
-                job=json.dumps({"tables": same}),
-                code=code("tables"),
-                folder=f"{RESULTS}/tables/{study}",
-            message:
-                f"tabulating {', '.join(same)} of {study}"
-            shell:
-                "python -m flexsurr.cli.tables --job {params.job:q} --inputs {input.files:q}"
-                " --captions {input.captions:q} --folder {params.folder:q} > {log:q} 2>&1"
+def caption(name):
+    """What to see in the figure or table `name`."""
+    return Path(caption_file(name)).read_text(encoding="utf-8")
+
+
+rule draw:
+    input:
+        lambda w: expand(
+            f"{RESULTS}/{{file}}", file=plan.read_by(w.study, FIGURES[w.figure])
+        ),
+    output:
+        report(
+            f"{RESULTS}/figures/{{study}}/{{figure}}.svg",
+            caption="../report/product.rst",
+            category="{study}",
+            subcategory="figures",
+            labels=lambda w: {"figure": w.figure, "shows": FIGURES[w.figure].title},
+        ),
+        f"{RESULTS}/figures/{{study}}/{{figure}}.png",
+    log:
+        f"{RESULTS}/logs/draw/{{study}}-{{figure}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/draw/{{study}}-{{figure}}.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=30,
+    params:
+        job=job("draw", "study", "figure"),
+        code=code("draw"),
+        caption=lambda w: caption(w.figure),
+    message:
+        "drawing {wildcards.figure} of {wildcards.study}"
+    shell:
+        "python -m flexsurr.cli.draw --job {params.job:q} --results {RESULTS:q} --output {output[0]:q}"
+        " > {log:q} 2>&1"
+
+
+rule tabulate:
+    input:
+        lambda w: expand(
+            f"{RESULTS}/{{file}}", file=plan.read_by(w.study, TABLES[w.table])
+        ),
+        caption=lambda w: caption_file(w.table),
+    output:
+        report(
+            f"{RESULTS}/tables/{{study}}/{{table}}.html",
+            caption="../report/product.rst",
+            category="{study}",
+            subcategory="tables",
+            labels=lambda w: {"table": w.table, "shows": TABLES[w.table].title},
+        ),
+        f"{RESULTS}/tables/{{study}}/{{table}}.csv",
+    log:
+        f"{RESULTS}/logs/tabulate/{{study}}-{{table}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/tabulate/{{study}}-{{table}}.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=30,
+    params:
+        job=job("tabulate", "study", "table"),
+        code=code("tabulate"),
+        caption=lambda w: caption(w.table),
+    message:
+        "tabulating {wildcards.table} of {wildcards.study}"
+    shell:
+        "python -m flexsurr.cli.tabulate --job {params.job:q} --results {RESULTS:q}"
+        " --caption {input.caption:q} --output {output[0]:q} > {log:q} 2>&1"
 
 
 rule join:
@@ -87,13 +87,18 @@ rule join:
     output:
         expand(f"{RESULTS}/tables/{{name}}.csv", name=TABLES),
     log:
-        f"{RESULTS}/logs/tables/join.log",
+        f"{RESULTS}/logs/join.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/join.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=30,
     params:
-        job="{}",
+        job=lambda w: write("join", {}),
         code=code("join"),
         folder=f"{RESULTS}/tables",
     message:
         "joining the tables of all studies"
     shell:
-        "python -m flexsurr.cli.join --job {params.job:q} --inputs {input:q} --folder {params.folder:q}"
-        " > {log:q} 2>&1"
+        "python -m flexsurr.cli.join --job {params.job:q} --inputs {input:q} --folder {params.folder:q} > {log:q} 2>&1"
