@@ -17,7 +17,7 @@ from flexsurr.evaluation.contenders import Contender, contenders
 from flexsurr.evaluation.energy import drift_percent, energy_error_percent
 from flexsurr.evaluation.published import beside
 from flexsurr.evaluation.ratios import PAPERS_INTEGRATOR, summary
-from flexsurr.evaluation.timing import one_thread, wall_time
+from flexsurr.evaluation.timing import measuring, wall_time
 from flexsurr.simulation import Trajectory, simulate
 from flexsurr.simulation.rhs import Array, Model
 
@@ -105,7 +105,7 @@ def measurements(
     references = list(reference_solutions(basis, variant, cases, t, settings.reference_integrator))
     models = [*contenders(basis, variant, surrogates, with_torch=True), *learned]
     rows = []
-    with one_thread():
+    with measuring():
         for setup in setups(models, settings.integrators):
             timed = [
                 _measure(setup, basis, variant, reference, setup.repeats(settings))

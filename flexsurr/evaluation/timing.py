@@ -34,15 +34,21 @@ def wall_time(run: Callable[[], Result], repeats: int = 1) -> tuple[Result, floa
 
 
 @contextmanager
-def one_thread() -> Iterator[None]:
-    """Hold torch to one thread, if it is loaded. The matrices in NumPy are too small for a second one."""
+def measuring() -> Iterator[None]:
+    """For a series of `wall_time`: one thread for torch, and nothing old for the collector to look through.
+
+    The matrices in NumPy are too small for a second thread. With torch and numba loaded, each collection
+    would take longer than what is timed; what exists now is exempt from those of the block.
+    """
     torch = sys.modules.get("torch")
-    if torch is None:
-        yield
-        return
-    threads = torch.get_num_threads()
-    torch.set_num_threads(1)
+    threads = torch.get_num_threads() if torch else 1
+    gc.collect()
+    gc.freeze()
     try:
+        if torch:
+            torch.set_num_threads(1)
         yield
     finally:
-        torch.set_num_threads(threads)
+        gc.unfreeze()
+        if torch:
+            torch.set_num_threads(threads)

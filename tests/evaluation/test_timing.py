@@ -29,6 +29,14 @@ def test_collection_is_switched_on_again_after_a_failure():
     assert gc.isenabled()
 
 
+def test_what_is_there_is_exempt_from_collection_while_a_series_is_measured():
+    before = gc.get_freeze_count()
+    with timing.measuring():
+        assert gc.get_freeze_count() > before + 1000
+        assert timing.wall_time(lambda: 1)[0] == 1
+    assert gc.get_freeze_count() == 0
+
+
 def test_at_least_one_repeat():
     with pytest.raises(ValueError, match="at least 1"):
         timing.wall_time(lambda: None, repeats=0)
