@@ -13,6 +13,7 @@ from flexsurr.aerodynamics.features import COEFFICIENTS, FEATURES, MACH
 from flexsurr.aerodynamics.forces import add_body, add_vortex_force
 from flexsurr.aerodynamics.horseshoe import influence
 from flexsurr.aerodynamics.mach_grid import MachGrid, write_weights
+from flexsurr.aerodynamics.stability_axes import name_coefficients
 from flexsurr.simulation.mapping import CompiledMapping, implements_mapping
 from flexsurr.simulation.rhs import Array
 
@@ -87,3 +88,4 @@ def _frozen(kernel, u, y, work):
             gamma = weight * work[count + n + i]
             add_vortex_force(exact, panels, u, i, gamma, vx, vy, vz, y)
     add_body(exact, panels, u, y)
+    name_coefficients(u, y)

@@ -1,7 +1,8 @@
 """The exact quadratic form: where the boundary condition is linear, so are circulations and velocities.
 
-With ξ = (1, all features but Mach number and altitude), every coefficient is ξᵀ Q(M) ξ; Q is worked out on a
-grid of Mach numbers. Altitude acts through the parasite drag, which is added.
+With ξ = (1, all features but Mach number and altitude), every sum in body axes is ξᵀ Q(M) ξ; Q is worked out
+on a grid of Mach numbers. Altitude acts through the parasite drag, which is added. Lift and drag follow by
+the sine and cosine of α, which no quadratic form holds.
 """
 
 from typing import NamedTuple
@@ -23,6 +24,7 @@ from flexsurr.aerodynamics.features import (
 from flexsurr.aerodynamics.forces import add_body
 from flexsurr.aerodynamics.frozen import frozen_matrices
 from flexsurr.aerodynamics.mach_grid import MachGrid, write_weights
+from flexsurr.aerodynamics.stability_axes import name_coefficients
 from flexsurr.simulation.mapping import CompiledMapping, implements_mapping
 from flexsurr.simulation.rhs import Array
 
@@ -46,7 +48,7 @@ def quadratic(airframe: Airframe, grid: MachGrid) -> CompiledMapping:
 
 
 def quadratic_forms(panels: Panels, grid: MachGrid) -> Array:
-    """Coefficients (K, 12, P) of the products."""
+    """Coefficients (K, 12, P) of the products, in body axes."""
     wash = _wash_of_terms(panels)
     onset = _onset_of_terms(panels.bound, panels.bound_shift)
     matrices = frozen_matrices(panels, grid)
@@ -87,8 +89,8 @@ def _onset_of_terms(points: Array, shift: Array) -> Array:
 
 
 def _readout(panels: Panels) -> Array:
-    """What each coefficient reads (12, N, 3) from the forces on the bound vortices."""
-    signs = np.array([-1.0, 1.0, -1.0])
+    """What each sum in body axes reads (12, N, 3) from the forces on the bound vortices."""
+    signs = np.array([-1.0, 1.0, -1.0])  # in body axes
     forces = np.eye(3)[:, None, :] * signs[:, None, None] * np.ones((1, len(panels.bound), 1))
     # r × F along e is F · (e × r)
     lengths = np.array([panels.span, panels.chord, panels.span])
@@ -129,3 +131,4 @@ def _quadratic(kernel, u, y, work):
                 total += forms[node, k, m] * work[first + m]
             y[k] += weight * total
     add_body(False, panels, u, y)
+    name_coefficients(u, y)

@@ -10,6 +10,7 @@ from flexsurr.aerodynamics.boundary import BoundaryCondition, normal_wash
 from flexsurr.aerodynamics.features import COEFFICIENTS, FEATURES, MACH
 from flexsurr.aerodynamics.forces import add_body, add_vortex_force
 from flexsurr.aerodynamics.horseshoe import induced
+from flexsurr.aerodynamics.stability_axes import name_coefficients
 from flexsurr.simulation.mapping import CompiledMapping, implements_mapping
 
 
@@ -61,3 +62,4 @@ def _rebuilt(kernel, u, y, work):
             vz += gamma[j] * uz
         add_vortex_force(exact, panels, u, i, gamma[i], vx, vy, vz, y)
     add_body(exact, panels, u, y)
+    name_coefficients(u, y)

@@ -21,16 +21,24 @@ from flexsurr.aerodynamics.features import (
     BETA,
     COEFFICIENTS,
     CONTROLS,
+    DRAG,
     FEATURES,
     FIRST_CONTROL,
     FIRST_ETA,
     FIRST_ETA_RATE,
+    FIRST_MODAL,
+    LIFT,
     MACH,
     MODES,
+    PITCH,
     RATE_P,
     RATE_Q,
     RATE_R,
+    ROLL,
+    SIDE,
+    YAW,
 )
+from flexsurr.aerodynamics.stability_axes import reflected
 from flexsurr.aerodynamics.standard_atmosphere import density, speed_of_sound
 from flexsurr.simulation.mapping import mapping
 from flexsurr.simulation.rhs import Array, implements_rhs
@@ -124,18 +132,22 @@ def _motion(kernel, t, x, dx, work):
     dx[5] = turn
     # forces
     per_mass = pressure / kernel.mass
+    # α by its tangent w / u
+    inclined = 1.0 / math.sqrt(u * u + w * w)
+    c_x, c_z = reflected(w * inclined, u * inclined, coefficients[LIFT], coefficients[DRAG])
     g = kernel.gravity
-    dx[6] = per_mass * coefficients[0] + kernel.thrust / kernel.mass - g * sin_theta - q * w + r * v
-    dx[7] = per_mass * coefficients[1] + g * cos_theta * sin_phi - r * u + p * w
-    dx[8] = per_mass * coefficients[2] + g * cos_theta * cos_phi - p * v + q * u
+    dx[6] = per_mass * c_x + kernel.thrust / kernel.mass - g * sin_theta - q * w + r * v
+    dx[7] = per_mass * coefficients[SIDE] + g * cos_theta * sin_phi - r * u + p * w
+    dx[8] = per_mass * c_z + g * cos_theta * cos_phi - p * v + q * u
     # moments
     inertia, inverse = kernel.inertia, kernel.inverse_inertia
     hx = inertia[0, 0] * p + inertia[0, 1] * q + inertia[0, 2] * r
     hy = inertia[1, 0] * p + inertia[1, 1] * q + inertia[1, 2] * r
     hz = inertia[2, 0] * p + inertia[2, 1] * q + inertia[2, 2] * r
-    mx = pressure * kernel.span * coefficients[3] - (q * hz - r * hy)
-    my = pressure * kernel.chord * coefficients[4] + kernel.thrust * kernel.thrust_height - (r * hx - p * hz)
-    mz = pressure * kernel.span * coefficients[5] - (p * hy - q * hx)
+    thrust_moment = kernel.thrust * kernel.thrust_height
+    mx = pressure * kernel.span * coefficients[ROLL] - (q * hz - r * hy)
+    my = pressure * kernel.chord * coefficients[PITCH] + thrust_moment - (r * hx - p * hz)
+    mz = pressure * kernel.span * coefficients[YAW] - (p * hy - q * hx)
     for i in range(3):
         dx[9 + i] = inverse[i, 0] * mx + inverse[i, 1] * my + inverse[i, 2] * mz
     # elastic modes
@@ -148,4 +160,4 @@ def _motion(kernel, t, x, dx, work):
     for i in range(MODES):
         place = int(kernel.places[i])
         if place >= 0:
-            dx[RIGID_STATES + k_modes + place] += pressure * coefficients[6 + i]
+            dx[RIGID_STATES + k_modes + place] += pressure * coefficients[FIRST_MODAL + i]

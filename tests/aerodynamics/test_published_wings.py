@@ -7,7 +7,7 @@ import pytest
 from optvl import OVLSolver
 from wings import lift_drag_moment, wing
 
-from flexsurr.aerodynamics.features import ALPHA, FEATURES, MACH, Reference
+from flexsurr.aerodynamics.features import ALPHA, FEATURES, LIFT, MACH, Reference
 from flexsurr.aerodynamics.vortex_lattice import rebuilt
 from flexsurr.config.aircraft import Section
 
@@ -19,7 +19,7 @@ def test_the_swept_wing_of_bertin_and_smith(strips, chordwise, published):
     airframe = wing((section,), strips, chordwise, Reference(0.2, 0.2, 1.0))
     u = np.zeros(len(FEATURES))
     u[MACH], u[ALPHA] = 0.0, 1e-4
-    lift = -rebuilt(airframe)(u)[2] / 1e-4
+    lift = rebuilt(airframe)(u)[LIFT] / 1e-4
     assert lift == pytest.approx(published, rel=5e-4)
 
 

@@ -1,13 +1,12 @@
 """Lattices to test with: single wings, and the airliner with few panels and modes of known motion."""
 
-import math
 from pathlib import Path
 
 import numpy as np
 
 from flexsurr.aerodynamics.airframe import Airframe, ModalMotion, airframe_of
 from flexsurr.aerodynamics.airliner_lattice import PanelCounts, airliner_lattice
-from flexsurr.aerodynamics.features import ALPHA, ALTITUDE, FEATURES, MACH, Reference
+from flexsurr.aerodynamics.features import ALPHA, ALTITUDE, DRAG, FEATURES, LIFT, MACH, PITCH, Reference
 from flexsurr.aerodynamics.frozen import frozen
 from flexsurr.aerodynamics.lattice import Lattice, panel
 from flexsurr.aerodynamics.mach_grid import fixed_machs
@@ -43,8 +42,14 @@ def lift_drag_moment(airframe: Airframe, alpha: float, mach: float = 0.0) -> tup
     u = np.zeros(len(FEATURES))
     u[MACH], u[ALTITUDE], u[ALPHA] = mach, 10000.0, alpha
     c = frozen(airframe, fixed_machs([mach]))(u)
-    sine, cosine = math.sin(alpha), math.cos(alpha)
-    return -c[2] * cosine + c[0] * sine, -c[0] * cosine - c[2] * sine, c[4]
+    return c[LIFT], c[DRAG], c[PITCH]
+
+
+def in_body_axes(u, c):
+    """C_X, C_Y, C_Z, C_l, C_m, C_n and the rest (12,) of the coefficients `c`, by the definition of lift."""
+    s, k = np.sin(u[ALPHA]), np.cos(u[ALPHA])
+    lift, drag, side, pitch, roll, yaw = c[:6]
+    return np.array([s * lift - k * drag, side, -k * lift - s * drag, roll, pitch, yaw, *c[6:]])
 
 
 def flexible_airliner(motion_of=None, counts: PanelCounts = FEW) -> Airframe:

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from flexsurr.aerodynamics.features import COEFFICIENTS, CONTROLS, FEATURES
+from flexsurr.aerodynamics.features import COEFFICIENTS, CONTROLS, FEATURES, LIFT
 from flexsurr.aerodynamics.standard_atmosphere import density, speed_of_sound
 from flexsurr.aerodynamics.vortex_lattice import rebuilt
 from flexsurr.config.panels import PanelCounts
@@ -95,11 +95,21 @@ def test_coefficients_act_as_forces_moments_and_generalised_forces(gnba_modes):
     value = np.arange(1.0, 13.0) * 1e-3
     model = FlightModel(gnba_modes, linear_aerodynamics(np.zeros(25), value, np.zeros((12, 25))))
     x = level()
+    x[6], x[8] = 200.0 * np.cos(0.1), 200.0 * np.sin(0.1)
     dx = model.derivative(0.0, x)
     pressure = 0.5 * density(9000.0) * 200.0**2 * 116.0
-    assert dx[6:9] == pytest.approx(pressure * value[:3] / 55764.0 + [0.0, 0.0, 9.80665])
+    lift, drag, side, pitch, roll, yaw = value[:6]
+    # lift is square to the airspeed and upwards, drag against it
+    force = np.array(
+        [
+            lift * np.sin(0.1) - drag * np.cos(0.1),
+            side,
+            -lift * np.cos(0.1) - drag * np.sin(0.1),
+        ]
+    )
+    assert dx[6:9] == pytest.approx(pressure * force / 55764.0 + [0.0, 0.0, 9.80665])
     inertia = TO_BODY @ gnba_modes.properties.inertia @ TO_BODY
-    moment = pressure * value[3:6] * [32.756, 3.862, 32.756]
+    moment = pressure * np.array([roll, pitch, yaw]) * [32.756, 3.862, 32.756]
     assert inertia @ dx[9:12] == pytest.approx(moment)
     generalised = np.zeros(8)
     generalised[[0, 1, 4, 5, 6, 7]] = pressure * value[6:]
@@ -143,7 +153,10 @@ def test_features_in_the_equations_are_those_along_a_trajectory(gnba_modes):
         for t in (0.2, 1.0, 2.0):
             added = model.derivative(t, x) - rest.derivative(t, x)
             inputs = features(model, np.array([t]), x[None])[0, first : first + 12]
-            assert added[6:9] == pytest.approx(pressure * inputs[:3] / 55764.0, rel=1e-9, abs=1e-9)
+            sine, cosine = x[8] / np.hypot(x[6], x[8]), x[6] / np.hypot(x[6], x[8])
+            lift, drag, side = inputs[:3]
+            force = np.array([sine * lift - cosine * drag, side, -cosine * lift - sine * drag])
+            assert added[6:9] == pytest.approx(pressure * force / 55764.0, rel=1e-9, abs=1e-9)
             assert added[[20, 21, 24, 25, 26, 27]] == pytest.approx(pressure * inputs[6:], rel=1e-9, abs=1e-6)
     assert features(model, np.array([1.0]), x[None])[0, 0] == pytest.approx(speed / speed_of_sound(x[2]))
 
@@ -158,7 +171,7 @@ def test_the_lattice_rebuilt_at_every_call_can_be_flown(gnba_modes):
     held = linear_aerodynamics(np.zeros(25), coefficients, np.zeros((12, 25)))
     same = model.with_aerodynamics(held).derivative(0.0, x)
     assert model.derivative(0.0, x) == pytest.approx(same, rel=1e-9, abs=1e-9)
-    assert coefficients[2] < -0.2
+    assert coefficients[LIFT] > 0.2
 
 
 def test_a_doublet_goes_up_comes_down_and_ends(gnba_modes):

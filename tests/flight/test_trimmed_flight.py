@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from flexsurr.aerodynamics.features import LIFT, ROLL, SIDE, YAW
 from flexsurr.config.flight import FlightCondition, TrimLimits
 from flexsurr.flight.linear_aerodynamics import linear_aerodynamics
 from flexsurr.flight.linearise import linearise, natural_modes, state_matrix
@@ -28,9 +29,8 @@ def test_in_trim_nothing_accelerates_and_the_wing_carries_the_weight(cruise):
     assert dx[0] == pytest.approx(0.7 * 299.46, rel=1e-4)  # the speed of sound at 10 km, ISO 2533
     coefficients = cruise.model.aerodynamics(features(cruise.model, np.zeros(1), cruise.state[None]))[0]
     pressure = 0.5 * 0.41271 * dx[0] ** 2 * 116.0
-    lift = -coefficients[2] * np.cos(cruise.alpha_rad) + coefficients[0] * np.sin(cruise.alpha_rad)
     weight = 55764.0 * 9.80665
-    assert pressure * lift + cruise.model.thrust_N * np.sin(cruise.alpha_rad) == pytest.approx(
+    assert pressure * coefficients[LIFT] + cruise.model.thrust_N * np.sin(cruise.alpha_rad) == pytest.approx(
         weight, rel=2e-3
     )
     assert 2.0 < np.degrees(cruise.alpha_rad) < 6.0
@@ -47,7 +47,9 @@ def test_an_aerodynamics_that_is_not_symmetric_is_trimmed_by_bank_aileron_and_ru
     cruise, gnba_derivatives
 ):
     about, value, slopes = gnba_derivatives.kernel
-    skewed = linear_aerodynamics(about, value + 1e-3 * np.array([0, 1, 0, 1, 0, -1, *[0] * 6]), slopes)
+    skew = np.zeros(12)
+    skew[[SIDE, ROLL, YAW]] = 1e-3, 1e-3, -1e-3
+    skewed = linear_aerodynamics(about, value + skew, slopes)
     found = trim(cruise.model.with_aerodynamics(skewed), CRUISE)
     assert found.model.derivative(0.0, found.state)[2:] == pytest.approx(np.zeros(26), abs=1e-8)
     assert abs(found.model.controls[3]) > 1e-4

@@ -27,7 +27,7 @@ def errors() -> pd.DataFrame:
     generator = np.random.default_rng(0)
     frame = pd.DataFrame(generator.uniform(-0.1, 0.1, (400, len(FEATURES))), columns=list(FEATURES))
     frame[[f"error_{name}" for name in COEFFICIENTS]] = 0.01
-    frame.loc[frame["alpha"] > 0.05, "error_C_Z"] = -0.1
+    frame.loc[frame["alpha"] > 0.05, "error_C_L"] = -0.1
     return frame
 
 
