@@ -96,17 +96,17 @@ def joint_stiffness(structure: Structure, joint: Joint) -> Array:
 
 
 def stiffness_matrix(structure: Structure) -> Array:
-    """K (n, n), diagonal: the springs of the joints."""
+    """K (n, n), diagonal: the springs of the joints (eq. 4)."""
     return np.diag(chain(structure).stiffness)
 
 
 def damping_matrix(structure: Structure) -> Array:
-    """C (n, n), Rayleigh dissipation: C = K β with one β [s] per joint kind."""
+    """C (n, n), Rayleigh dissipation (eq. 5): C = K β with one β [s] per joint kind."""
     return np.diag(chain(structure).damping)
 
 
 def rotary_inertia(structure: Structure) -> Array:
-    """I (n, n) [kg m²]: constant, in torsion only, Tᵀ diag(I0 l) T with T lower triangular ones (eq. 4).
+    """I (n, n) [kg m²]: constant, in torsion only, Tᵀ diag(I0 l) T with T lower triangular ones (eq. 3).
 
     It counts each element's twist rate as the sum of the torsion rates up to it.
     """

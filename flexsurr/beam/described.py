@@ -51,7 +51,7 @@ def points(structure: Structure, q: Array) -> tuple[list[Array], list[Array], Ar
 
 
 def jacobians(structure: Structure, q: Array) -> tuple[Array, Array, Array]:
-    """∂r/∂q of masses (N, 3, n), centres (N, 3, n) and tip (3, n), one complex step a column (eq. 2)."""
+    """∂r/∂q of masses (N, 3, n), centres (N, 3, n) and tip (3, n), a complex step a column: J of eq. 3."""
     n = len(q)
     of_masses, of_centres = np.empty((2, structure.elements, 3, n))
     of_tip = np.empty((3, n))
@@ -84,7 +84,7 @@ def twist_rates(structure: Structure, q: Array) -> Array:
 
 
 def mass_matrix(structure: Structure, jacobian: Array, inertia: Array) -> Array:
-    """M (n, n) = Σ m JᵀJ + I from the masses' Jacobian (N, 3, n) and the rotary inertia (n, n), eq. 4."""
+    """M (n, n) = Σ m JᵀJ + I from the masses' Jacobian (N, 3, n) and the rotary inertia (n, n), eq. 3."""
     total = inertia.copy()
     for columns in jacobian:
         total += chain(structure).element_mass * columns.T @ columns
@@ -92,7 +92,7 @@ def mass_matrix(structure: Structure, jacobian: Array, inertia: Array) -> Array:
 
 
 def velocities(structure: Structure, q: Array, rates: Array) -> list[Array]:
-    """Velocities (3,) of the masses at q (n,) and q̇ (n,) [m/s], from element to element (eq. 3)."""
+    """Velocities (3,) of the masses at q (n,) and q̇ (n,) [m/s], from element to element: eq. 1 in time."""
     beam = chain(structure)
     joints = structure.ordered_joints
     blocks = dict(zip(joints, np.split(q, len(joints)), strict=True))
@@ -117,7 +117,7 @@ def velocities(structure: Structure, q: Array, rates: Array) -> list[Array]:
 
 
 def gyroscopic_forces(structure: Structure, q: Array, rates: Array, modes: Array) -> Array:
-    """½ ∂/∂η (q̇ᵀ M q̇) (r,) with q = Φ η at fixed q̇: complex steps of the kinetic energy (eqs. 6, 10).
+    """½ ∂/∂η (q̇ᵀ M q̇) (r,) with q = Φ η at fixed q̇: complex steps of the kinetic energy (eqs. 3, 6).
 
     `modes` (n, r) is Φ; one step a coordinate of the model.
     """

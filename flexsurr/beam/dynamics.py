@@ -60,8 +60,8 @@ class BeamModel(ABC):
     def energy(self, x: Array) -> Array:
         """H = ½ pᵀ M⁻¹ p + ½ ηᵀ K η − Σ m g·(r − r(0)) (...,) [J] of states x (..., 2r).
 
-        Constant along undamped, unloaded motion of the hamiltonian variant. Complex states are taken too,
-        for derivatives by complex steps.
+        Eqs. 3 and 4, and gravity. Constant along undamped, unloaded motion of the hamiltonian variant.
+        Complex states are taken too, for derivatives by complex steps.
         """
         modes, r = self.projection.modes, self.projection.coordinates
         x = np.asarray(x)

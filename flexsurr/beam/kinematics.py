@@ -92,7 +92,7 @@ class Velocities:
 
 
 def velocities(beam: Chain, at: Configuration, rates: Array) -> Velocities:
-    """Velocities for k sets of joint rates (..., k, n), eq. 3.
+    """Velocities for k sets of joint rates (..., k, n): the J q̇ of eq. 3.
 
     With the columns of Φ as rates, `masses` holds the columns of the Jacobian J Φ.
     """
@@ -137,7 +137,7 @@ def generalised_forces(
 
 
 def mass_matrix(structure: Structure, q: Array) -> Array:
-    """(..., n, n) M(q) = Σ m JᵀJ + I (eq. 4), the kinetic energy being ½ q̇ᵀ M q̇."""
+    """(..., n, n) M(q) = Σ m JᵀJ + I, the kinetic energy being ½ q̇ᵀ M q̇ (eq. 3)."""
     beam = chain(structure)
     at = configuration(beam, _floating(check_coordinates(structure, q)))
     return projected_mass(beam, at, np.eye(beam.coordinates)) + rotary_inertia(structure)

@@ -1,4 +1,4 @@
-"""Whether a field can be that of a D-HNN at all: the symmetries that eq. 12 demands of its derivatives."""
+"""Whether a field can be that of a D-HNN at all: the symmetries that the field in eq. 12 has."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ _STEP = 1e-6
 
 @dataclass(frozen=True)
 class Asymmetry:
-    """How far a field is from the fields of eq. 12: 0 where it is one of them.
+    """How far a field is from the fields in eq. 12: 0 where it is one of them.
 
     Root mean square over the states of ‖A − Aᵀ‖, over that of the two terms whose sum A is (Frobenius
     norms), for the two matrices A that have to be symmetric: `mixed` is ∂q̇/∂q + (∂ṗ/∂p)ᵀ, `direct` is

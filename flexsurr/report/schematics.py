@@ -31,7 +31,7 @@ def figure_05() -> Figure:
 
 @styled
 def figure_06() -> Figure:
-    """The HNN, eq. 11: one scalar H out, the field by differentiation and the canonical structure."""
+    """The HNN (loss: eq. 11): one scalar H out, the field by differentiation and the canonical structure."""
     figure, ax = canvas(PAGE_IN * 0.75, 1.9)
     inputs = ((0.55, 1.2), (0.55, 0.6))
     hidden = _hidden(ax, 1.5, BLUE, PALE_BLUE)
@@ -49,14 +49,14 @@ def figure_06() -> Figure:
         block(ax, (x, y), (1.15, 0.34), text)
         arrow(ax, (3.7, 0.9 + 0.4 * (y - 0.9)), (x - 0.575, y))
     _column_titles(
-        ax, 1.78, ((0.55, "state"), (1.5, "hidden layer"), (2.4, "energy"), (4.72, "field (eq. 11)"))
+        ax, 1.78, ((0.55, "state"), (1.5, "hidden layer"), (2.4, "energy"), (4.72, "field (in eq. 11)"))
     )
     return figure
 
 
 @styled
 def figure_07() -> Figure:
-    """The D-HNN, eq. 12: two scalars H and D out, the field by differentiation of both."""
+    """The D-HNN (loss: eq. 12): two scalars H and D out, the field by differentiation of both."""
     figure, ax = canvas(PAGE_IN * 0.82, 1.9)
     inputs = ((0.55, 1.2), (0.55, 0.6))
     heads = ((1.28, "H", BLUE, PALE_BLUE), (0.5, "D", PURPLE, PALE_PURPLE))
@@ -82,7 +82,7 @@ def figure_07() -> Figure:
     )
     for centre, text in zip(outputs, texts, strict=True):
         block(ax, centre, (1.44, 0.36), text)
-    titles = ((0.55, "state"), (1.5, "hidden layers"), (2.3, "energy"), (5.15, "field (eq. 12)"))
+    titles = ((0.55, "state"), (1.5, "hidden layers"), (2.3, "energy"), (5.15, "field (in eq. 12)"))
     _column_titles(ax, 1.78, titles)
     _column_titles(ax, 0.14, ((2.3, "dissipation"),))
     return figure

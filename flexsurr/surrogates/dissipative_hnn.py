@@ -1,4 +1,4 @@
-"""Dissipative Hamiltonian neural network, eq. 12: a Hamiltonian and a dissipation function."""
+"""Dissipative Hamiltonian neural network (loss: eq. 12): a Hamiltonian and a dissipation function."""
 
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
@@ -13,7 +13,7 @@ from flexsurr.surrogates.surrogate import symplectic
 
 @dataclass(frozen=True, eq=False)
 class DissipativeHNN(ScalarHeads):
-    """q̇ = ∂H/∂p + ∂D/∂q, ṗ = −∂H/∂q + ∂D/∂p, eq. 12, with H and D two readouts of one network.
+    """q̇ = ∂H/∂p + ∂D/∂q, ṗ = −∂H/∂q + ∂D/∂p (in eq. 12), with H and D two readouts of one network.
 
     Two separate networks are the special case in which each neuron is read by one of the two. With r ≥ 2
     not every field has this form; and H need not be the energy: adding a holomorphic function of q + ip to

@@ -1,4 +1,4 @@
-"""Hamiltonian neural network, eq. 11: a network H(q, p), and Hamilton's equations of it."""
+"""Hamiltonian neural network (loss: eq. 11): a network H(q, p), and Hamilton's equations of it."""
 
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
@@ -16,7 +16,7 @@ from flexsurr.surrogates.surrogate import symplectic
 
 @dataclass(frozen=True, eq=False)
 class HNN(ScalarHeads):
-    """q̇ = ∂H/∂p, ṗ = −∂H/∂q with H = Σ c σ(… σ(W₁ x + b₁) …), eq. 11.
+    """q̇ = ∂H/∂p, ṗ = −∂H/∂q with H = Σ c σ(… σ(W₁ x + b₁) …): eq. 2 without load or dissipation.
 
     The scaled field is Hamiltonian; that in the units of the states is so if the scaling is canonical.
     """

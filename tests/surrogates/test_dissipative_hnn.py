@@ -1,4 +1,4 @@
-"""The D-HNN of eq. 12: what its field is made of, and what it therefore cannot be."""
+"""The D-HNN, the field in eq. 12: what its field is made of, and what it therefore cannot be."""
 
 import numpy as np
 import pytest
