@@ -91,3 +91,20 @@ FIRST_ETA = FIRST_CONTROL + CONTROLS
 FIRST_ETA_RATE = FIRST_ETA + MODES
 
 LIFT, DRAG, SIDE, PITCH, ROLL, YAW, FIRST_MODAL = range(7)
+
+# The four groups that the earlier work gave a network each: drag, longitudinal, lateral-directional, modal.
+OUTPUT_GROUPS: dict[str, tuple[str, ...]] = {
+    "drag": ("C_D",),
+    "longitudinal": ("C_L", "C_m"),
+    "lateral": ("C_Y", "C_l", "C_n"),
+    "modal": COEFFICIENTS[FIRST_MODAL:],
+}
+
+# Pairs of features whose products are the second-order terms of a network that has them as further inputs:
+# the onset's angles with each other and with each modal coordinate and velocity.
+SECOND_ORDER: tuple[tuple[int, int], ...] = (
+    (ALPHA, ALPHA),
+    (ALPHA, BETA),
+    (BETA, BETA),
+    *((angle, modal) for angle in (ALPHA, BETA) for modal in range(FIRST_ETA, len(FEATURES))),
+)

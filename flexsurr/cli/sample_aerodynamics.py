@@ -4,10 +4,12 @@ import logging
 from pathlib import Path
 
 from flexsurr.aerodynamics.features import COEFFICIENT_UNITS, COEFFICIENTS, FEATURE_UNITS, FEATURES
+from flexsurr.aerodynamics.modal_linearisation import linear_in_modes
 from flexsurr.aerodynamics.sampling import draw_features, feature_intervals
 from flexsurr.aerodynamics.vortex_lattice import rebuilt
 from flexsurr.cli.command import Job, command
 from flexsurr.config.aircraft import Aircraft
+from flexsurr.config.coefficient_sweep import dataset_name
 from flexsurr.config.feature_limits import FeatureLimits
 from flexsurr.config.panels import PanelCounts
 from flexsurr.config.part import part_of
@@ -35,10 +37,11 @@ def main(job: Job, output: Path) -> None:
         count=job["count"],
         sampling=job["sampling"],
     )
-    y = rebuilt(airframe, job["boundary_condition"])(u)
+    form = rebuilt(airframe, job["boundary_condition"])
+    y = linear_in_modes(form, u) if job["lattice"] == "linear_in_modes" else form(u)
     metadata = SampleMetadata(
         study=job["study"],
-        sampling=job["sampling"],
+        sampling=dataset_name(job["sampling"], job["lattice"]),
         seed=job["seed"],
         configuration=job["configuration"],
         first=job["first"],

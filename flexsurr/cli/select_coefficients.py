@@ -1,4 +1,4 @@
-"""Choose the network that the airliner flies with, and tabulate it beside the baselines."""
+"""Choose the networks that the airliner flies with, and tabulate them beside the baselines."""
 
 import json
 from pathlib import Path
@@ -13,7 +13,7 @@ from flexsurr.training.tracking import end_sweep, read_store
 
 
 def main(job: Job, runs: Path, store: Path, output: Path, table: Path) -> None:
-    """Write {model: metrics of the best run that finished} to `output` and their accuracies to `table`.
+    """Write {label: metrics of the best run that finished} to `output` and their accuracies to `table`.
 
     Best is the least validation nmse. Raises StorageError where no network has finished.
     """
@@ -24,9 +24,9 @@ def main(job: Job, runs: Path, store: Path, output: Path, table: Path) -> None:
     for figures in metrics.values():
         if figures["status"] != "finished" or figures["validation_nmse"] is None:
             continue
-        known = best.get(figures["model"])
+        known = best.get(figures["label"])
         if known is None or figures["validation_nmse"] < known["validation_nmse"]:
-            best[figures["model"]] = figures
+            best[figures["label"]] = figures
     if "network" not in best:
         raise StorageError(f"{runs}: no network of the airliner has finished; see their metrics.json")
     frames = [read_frame(runs / chosen["run_id"] / "accuracy.parquet") for chosen in best.values()]

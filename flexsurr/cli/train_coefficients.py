@@ -47,12 +47,13 @@ def _train(job: Job, shards: list[Path], store: Path, folder: Path) -> None:
             start = time.perf_counter()
             predicted = fit_coefficient_polynomial(data, DEGREES[trial.model])(data.u)
             figures = {"status": "finished", "reason": "", "wall_s": time.perf_counter() - start}
-        table = accuracy(data, predicted, trial.model)
+        table = accuracy(data, predicted, trial.label)
         write_frame(folder / "accuracy.parquet", table)
         write_frame(folder / "errors.parquet", held_out_errors(data, predicted))
         metrics = {
             "run_id": job["run_id"],
             "study": job["study"],
+            "label": trial.label,
             **job["trial"],
             **figures,
             "train_nmse": float(table["train_nmse"].mean()),

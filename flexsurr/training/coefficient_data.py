@@ -1,7 +1,8 @@
 """Samples of the aerodynamics, scaled to ±1 and split into those to train and those to validate on."""
 
 import hashlib
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,6 +42,17 @@ class CoefficientData:
     def scaled_y(self) -> Array:
         """Coefficients (m, k), those of the training samples in ±1."""
         return (2.0 * self.y - (self.output_high + self.output_low)) / (self.output_high - self.output_low)
+
+    def only(self, outputs: Sequence[str]) -> "CoefficientData":
+        """The same samples with some of the outputs, in their order."""
+        places = [self.output_names.index(name) for name in outputs]
+        return replace(
+            self,
+            y=self.y[:, places],
+            output_low=self.output_low[places],
+            output_high=self.output_high[places],
+            output_names=tuple(outputs),
+        )
 
 
 def coefficient_data(samples: Samples, held_out: float, seed: int) -> CoefficientData:

@@ -32,6 +32,6 @@ def expand_coefficients(spaces: tuple[CoefficientSpace, ...]) -> list[Coefficien
 
 def coefficient_run_id(trial: CoefficientTrial, configurations: dict[str, str]) -> str:
     """`airliner`, the model, and ten hex digits of the hash of the trial and the samples it is fitted to."""
-    content = {"trial": trial.model_dump(mode="json"), "samples": configurations[trial.sampling]}
+    content = {"trial": trial.model_dump(mode="json"), "samples": configurations[trial.dataset]}
     canonical = json.dumps(content, sort_keys=True, separators=(",", ":"))
     return f"airliner-{trial.model}-{hashlib.sha256(canonical.encode()).hexdigest()[:DIGITS]}"

@@ -4,14 +4,20 @@ import hashlib
 import json
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 from flexsurr.config.airliner import STUDY, Airliner, AirlinerFiles, load_airliner
-from flexsurr.config.coefficient_sweep import CoefficientTrial
+from flexsurr.config.coefficient_sweep import CoefficientTrial, LatticeForm, Sampling, dataset_name
 from flexsurr.config.errors import ConfigurationError
 from flexsurr.training.coefficient_sweep import coefficient_run_id, expand_coefficients
 
 Job = dict[str, Any]
+
+_DATASETS = {
+    dataset_name(sampling, lattice): (sampling, lattice)
+    for sampling in get_args(Sampling)
+    for lattice in get_args(LatticeForm)
+}
 
 
 class AirlinerPlan:
@@ -32,7 +38,7 @@ class AirlinerPlan:
     @cached_property
     def runs(self) -> dict[str, CoefficientTrial]:
         """Trials by their run_id."""
-        hashes = {sampling: self.configuration(sampling) for sampling in ("pseudo_random", "sobol")}
+        hashes = {trial.dataset: self.configuration(trial.dataset) for trial in self._trials}
         return {coefficient_run_id(trial, hashes): trial for trial in self._trials}
 
     @property
@@ -40,21 +46,21 @@ class AirlinerPlan:
         """Number of shards of each set of samples."""
         return self.airliner.sweep.dataset.shards
 
-    def sample(self, sampling: str, shard: int | str) -> Job:
-        """One shard of samples, by its number."""
+    def sample(self, name: str, shard: int | str) -> Job:
+        """One shard of the samples called `name`, by its number."""
         dataset = self.airliner.sweep.dataset
         first = int(shard) * dataset.samples_per_shard
         return {
-            **self._samples(sampling),
+            **self._samples(name),
             "study": STUDY,
-            "configuration": self.configuration(sampling),
+            "configuration": self.configuration(name),
             "first": first,
             "count": min(dataset.samples_per_shard, dataset.samples - first),
         }
 
-    def configuration(self, sampling: str) -> str:
-        """The hash of every value that samples depend on."""
-        canonical = json.dumps(self._samples(sampling), sort_keys=True)
+    def configuration(self, name: str) -> str:
+        """The hash of every value that the samples called `name` depend on."""
+        canonical = json.dumps(self._samples(name), sort_keys=True)
         return hashlib.sha256(canonical.encode()).hexdigest()[:16]
 
     def train(self, run_id: str) -> Job:
@@ -64,7 +70,7 @@ class AirlinerPlan:
             "run_id": run_id,
             "study": STUDY,
             "trial": trial.model_dump(mode="json"),
-            "configuration": self.configuration(trial.sampling),
+            "configuration": self.configuration(trial.dataset),
             "samples": dataset.samples,
             "held_out": dataset.held_out,
             "seed": dataset.seed,
@@ -74,7 +80,8 @@ class AirlinerPlan:
         """The choice among the fits."""
         return {"study": STUDY, "runs": list(self.runs)}
 
-    def _samples(self, sampling: str) -> Job:
+    def _samples(self, name: str) -> Job:
+        sampling, lattice = _DATASETS[name]
         dataset, flight = self.airliner.sweep.dataset, self.airliner.flight
         aircraft = self.airliner.aircraft.model_dump(mode="json", exclude={"structural_damping_ratio"})
         return {
@@ -86,4 +93,5 @@ class AirlinerPlan:
             "boundary_condition": dataset.boundary_condition,
             "seed": dataset.seed,
             "sampling": sampling,
+            "lattice": lattice,
         }

@@ -19,6 +19,7 @@ from flexsurr.aerodynamics.features import (
     ALPHA,
     COEFFICIENTS,
     FEATURES,
+    FIRST_ETA,
     FIRST_ETA_RATE,
     RATE_P,
     RATE_R,
@@ -26,6 +27,7 @@ from flexsurr.aerodynamics.features import (
 from flexsurr.aerodynamics.forces import add_body
 from flexsurr.aerodynamics.frozen import frozen
 from flexsurr.aerodynamics.mach_grid import fixed_machs, mach_grid
+from flexsurr.aerodynamics.modal_linearisation import linear_in_modes
 from flexsurr.aerodynamics.quadratic import quadratic
 from flexsurr.aerodynamics.vortex_lattice import rebuilt
 
@@ -166,6 +168,22 @@ def slope(output: str, feature: str, step: float = 1e-4) -> float:
     v[FEATURES.index(feature)] += step
     at = COEFFICIENTS.index(output)
     return float((EXACT(v)[at] - EXACT(u)[at]) / step)
+
+
+@settings(max_examples=20)
+@given(units=UNITS, size=st.floats(-1.0, 1.0))
+def test_linear_in_the_modes_it_touches_the_lattice_at_rest_and_adds_up(units, size):
+    u = features(units)
+    modal = np.zeros(25)
+    modal[FIRST_ETA:] = u[FIRST_ETA:]
+    rest = u - modal
+    points = np.array([rest, rest + modal, rest + size * modal, rest + 1e-3 * modal, rest - 1e-3 * modal])
+    c = linear_in_modes(EXACT, points)
+    np.testing.assert_array_less(np.abs(c[0] - EXACT(rest)), 1e-13 * SIZE)
+    np.testing.assert_array_less(np.abs(c[2] - (c[0] + size * (c[1] - c[0]))), 1e-9 * SIZE)
+    # the rest of second order is one millionth of that of the whole motion
+    second = np.abs(EXACT(points[3]) + EXACT(points[4]) - 2.0 * c[0])
+    np.testing.assert_array_less(np.abs(c[3] - EXACT(points[3])), second + 1e-9 * SIZE)
 
 
 def test_controls_act_in_the_documented_sense():

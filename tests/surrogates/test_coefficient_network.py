@@ -1,5 +1,7 @@
 """The network of coefficients: three implementations, one function; files that hold it."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 import torch
@@ -11,6 +13,7 @@ from flexsurr.surrogates.coefficient_network import (
     CoefficientNetwork,
     load_coefficient_network,
     save_coefficient_network,
+    side_by_side,
 )
 
 INPUTS, OUTPUTS = 25, 12
@@ -80,6 +83,56 @@ def test_saved_and_loaded_it_is_the_same_to_the_bit(tmp_path, activation):
     again = load_coefficient_network(tmp_path / "weights.npz")
     np.testing.assert_array_equal(again(u), network(u))
     assert (again.input_names, again.activation) == (network.input_names, activation)
+
+
+def test_products_of_features_are_further_inputs():
+    plain = random_network(5, hidden=6)
+    products = ((2, 2), (3, 20), (24, 0))
+    generator = np.random.default_rng(6)
+    weights, biases, weights_out, biases_out = plain.arrays()
+    further = generator.standard_normal((len(products), 6))
+    pieces = (np.vstack([weights, further]), biases, weights_out, biases_out)
+    network = dataclasses.replace(
+        plain, parameters=np.concatenate([piece.ravel() for piece in pieces]), products=products
+    )
+    u = inputs(network, 7, 20)
+    x = (2.0 * u - network.input_low - network.input_high) / (network.input_high - network.input_low)
+    second = np.stack([x[:, a] * x[:, b] for a, b in products], axis=1)
+    hidden = np.tanh(x @ weights + second @ further + biases)
+    half = 0.5 * (network.output_high - network.output_low)
+    expected = 0.5 * (network.output_low + network.output_high) + half * (hidden @ weights_out + biases_out)
+    np.testing.assert_allclose(network(u), expected, atol=1e-10)
+    np.testing.assert_allclose(network.compiled()(u), expected, atol=1e-10)
+
+
+def test_networks_side_by_side_are_one_that_gives_what_each_gives(tmp_path):
+    first = random_network(8, hidden=5)
+    others = [random_network(seed, hidden=5) for seed in (9, 10)]
+    shared = {name: getattr(first, name) for name in ("input_low", "input_high")}
+    parts = []
+    for network, outputs in zip((first, *others), ((3, 0), (1,), (4, 2)), strict=True):
+        weights, biases, weights_out, biases_out = network.arrays()
+        places = list(range(len(outputs)))
+        pieces = (weights, biases, weights_out[:, places], biases_out[places])
+        parts.append(
+            dataclasses.replace(
+                network,
+                **shared,
+                parameters=np.concatenate([piece.ravel() for piece in pieces]),
+                output_low=network.output_low[places],
+                output_high=network.output_high[places],
+                output_names=tuple(f"y{k}" for k in outputs),
+            )
+        )
+    joined = side_by_side(parts, tuple(f"y{k}" for k in range(5)))
+    save_coefficient_network(joined, tmp_path / "weights.npz")
+    again = load_coefficient_network(tmp_path / "weights.npz")
+    u = inputs(first, 11, 20)
+    for part, places in zip(parts, ([3, 0], [1], [4, 2]), strict=True):
+        for form in (joined, joined.compiled(), again.compiled()):
+            np.testing.assert_allclose(form(u)[:, places], part(u), rtol=1e-12, atol=1e-10)
+    reads = joined.compiled().kernel.reads
+    assert reads.tolist() == [[0, 5], [5, 10], [10, 15], [0, 5], [10, 15]]
 
 
 def test_a_single_sample_or_a_grid_of_them():

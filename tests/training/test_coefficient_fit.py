@@ -5,6 +5,13 @@ import dataclasses
 import numpy as np
 import pytest
 
+from flexsurr.aerodynamics.features import (
+    COEFFICIENT_UNITS,
+    COEFFICIENTS,
+    FEATURE_UNITS,
+    FEATURES,
+    OUTPUT_GROUPS,
+)
 from flexsurr.config.coefficient_sweep import CoefficientSpace, CoefficientTrial
 from flexsurr.storage import SampleMetadata, Samples
 from flexsurr.training.coefficient_accuracy import accuracy, held_out_errors
@@ -85,7 +92,7 @@ def test_a_network_learns_and_its_losses_are_those_of_the_table(tmp_path):
     assert table["validation_r2"].min() > 0.999
     assert fit.train_nmse == pytest.approx(table["train_nmse"].mean(), rel=1e-9)
     assert fit.validation_nmse == pytest.approx(table["validation_nmse"].mean(), rel=1e-9)
-    assert fit.validation_nmse == fit.history["validation_loss"].min()
+    assert fit.validation_nmse == pytest.approx(fit.history["validation_loss"].min(), rel=1e-9)
 
 
 def test_interrupted_and_resumed_it_comes_to_the_same_weights(tmp_path, monkeypatch):
@@ -104,6 +111,51 @@ def test_interrupted_and_resumed_it_comes_to_the_same_weights(tmp_path, monkeypa
     assert epochs[0] == 12  # the eleventh was the last to be kept
     np.testing.assert_array_equal(resumed.network.parameters, whole.network.parameters)
     assert list(folder.iterdir()) == []
+
+
+def test_four_networks_are_the_four_fits_of_their_outputs(tmp_path):
+    rng = np.random.default_rng(0)
+    y = quadratic_samples().y @ rng.normal(size=(2, len(COEFFICIENTS)))
+    names = {"output_names": COEFFICIENTS, "output_units": COEFFICIENT_UNITS}
+    samples = quadratic_samples()
+    metadata = dataclasses.replace(samples.metadata, **names)
+    data = coefficient_data(dataclasses.replace(samples, y=y, metadata=metadata), 0.2, 1)
+    trial = TRIAL.model_copy(update={"hidden": 4, "epochs": 5, "networks": "four"})
+    reported = []
+    fit = fit_coefficients(trial, data, tmp_path, lambda epoch, *losses: reported.append(epoch))
+    assert reported == list(range(1, 21))
+    assert list(tmp_path.iterdir()) == []
+    assert (fit.network.hidden, fit.network.output_names) == (16, COEFFICIENTS)
+    single = trial.model_copy(update={"networks": "one"})
+    for name, outputs in OUTPUT_GROUPS.items():
+        alone = fit_coefficients(single, data.only(outputs), tmp_path)
+        places = [COEFFICIENTS.index(output) for output in outputs]
+        np.testing.assert_allclose(fit.network(data.u)[:, places], alone.network(data.u), atol=1e-12)
+        losses = fit.history.loc[fit.history["outputs"] == name, "train_loss"]
+        np.testing.assert_array_equal(losses, alone.history["train_loss"])
+
+
+def test_with_second_order_terms_a_product_of_two_features_is_learned_by_less(tmp_path):
+    """α η_1 is among the further inputs; a network of a single neuron cannot make it of the features."""
+    u = np.random.default_rng(3).uniform(-1.0, 1.0, (400, len(FEATURES)))
+    eta = FEATURES.index("eta_1")
+    y = 1e-2 * (u[:, [2]] * u[:, [eta]] + u[:, [3]])
+    ones = (1.0,) * len(FEATURES)
+    metadata = dataclasses.replace(
+        quadratic_samples().metadata,
+        count=400,
+        input_names=FEATURES,
+        input_units=FEATURE_UNITS,
+        input_low=tuple(-one for one in ones),
+        input_high=ones,
+        output_names=("y",),
+        output_units=("1",),
+    )
+    data = coefficient_data(Samples(u, y, metadata), 0.2, 1)
+    plain = TRIAL.model_copy(update={"hidden": 1, "epochs": 20})
+    second = plain.model_copy(update={"inputs": "second_order"})
+    errors = [fit_coefficients(trial, data, tmp_path).validation_nmse for trial in (plain, second)]
+    assert errors[1] < 0.1 * errors[0]
 
 
 def test_lbfgs_lessens_the_loss_too(tmp_path):

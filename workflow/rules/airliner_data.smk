@@ -15,25 +15,25 @@ ruleorder: select_coefficients > select
 
 rule sample_aerodynamics:
     output:
-        f"{RESULTS}/datasets/airliner/{{sampling}}/shard-{{shard}}.parquet",
+        f"{RESULTS}/datasets/airliner/{{dataset}}/shard-{{shard}}.parquet",
     log:
-        f"{RESULTS}/logs/sample_aerodynamics/{{sampling}}-{{shard}}.log",
+        f"{RESULTS}/logs/sample_aerodynamics/{{dataset}}-{{shard}}.log",
     benchmark:
-        f"{RESULTS}/benchmarks/sample_aerodynamics/{{sampling}}-{{shard}}.tsv"
+        f"{RESULTS}/benchmarks/sample_aerodynamics/{{dataset}}-{{shard}}.tsv"
     wildcard_constraints:
-        sampling="pseudo_random|sobol",
+        dataset="(pseudo_random|sobol)(-linear_in_modes)?",
     threads: 1
     resources:
         mem_mb=2000,
         runtime=60,
     params:
         job=lambda w: write(
-            f"sample_aerodynamics/{w.sampling}-{w.shard}",
-            airliner.sample(w.sampling, w.shard),
+            f"sample_aerodynamics/{w.dataset}-{w.shard}",
+            airliner.sample(w.dataset, w.shard),
         ),
         code=code("sample_aerodynamics"),
     message:
-        "sampling the airliner's aerodynamics, {wildcards.sampling}, shard {wildcards.shard}"
+        "sampling the airliner's aerodynamics, {wildcards.dataset}, shard {wildcards.shard}"
     shell:
         "python -m flexsurr.cli.sample_aerodynamics --job {params.job:q} --output {output:q}"
         " > {log:q} 2>&1"
@@ -42,7 +42,7 @@ rule sample_aerodynamics:
 rule train_coefficients:
     input:
         shards=lambda w: expand(
-            f"{RESULTS}/datasets/airliner/{airliner.runs[w.run_id].sampling}/shard-{{shard:04d}}.parquet",
+            f"{RESULTS}/datasets/airliner/{airliner.runs[w.run_id].dataset}/shard-{{shard:04d}}.parquet",
             shard=range(airliner.shards),
         ),
     output:
