@@ -23,11 +23,12 @@ PLAN = AirlinerPlan.load(ROOT, AirlinerFiles(sweep="config/sweeps/airliner_quick
 def results(tmp_path_factory) -> Path:
     """Everything the commands write, made in the order in which the rules make it."""
     root = tmp_path_factory.mktemp("results")
-    for shard in range(PLAN.shards):
-        sample_aerodynamics.main(PLAN.sample("pseudo_random", shard), shard_path(root, shard))
+    for name in {trial.dataset for trial in PLAN.runs.values()}:
+        for shard in range(PLAN.shards):
+            sample_aerodynamics.main(PLAN.sample(name, shard), shard_path(root, shard, name))
     store.main({"uri": None, "studies": ["airliner"]}, root / "mlflow" / "airliner.json")
-    shards = [shard_path(root, shard) for shard in range(PLAN.shards)]
-    for run_id in PLAN.runs:
+    for run_id, trial in PLAN.runs.items():
+        shards = [shard_path(root, shard, trial.dataset) for shard in range(PLAN.shards)]
         train_coefficients.main(
             PLAN.train(run_id), shards, root / "mlflow" / "airliner.json", root / "runs" / run_id
         )
@@ -35,8 +36,8 @@ def results(tmp_path_factory) -> Path:
     return root
 
 
-def shard_path(root: Path, shard: int) -> Path:
-    return root / f"shard-{shard:04d}.parquet"
+def shard_path(root: Path, shard: int, name: str = "pseudo_random") -> Path:
+    return root / name / f"shard-{shard:04d}.parquet"
 
 
 def select(root: Path) -> None:
@@ -62,7 +63,8 @@ def test_a_shard_comes_out_the_same_from_its_seed_and_number(results, tmp_path):
 def test_the_table_has_each_coefficient_once_for_each_model(results):
     table = pd.read_csv(results / "airliner_accuracy.csv")
     assert list(table.columns) == ["output", "train_nmse", "validation_nmse", "validation_r2", "model"]
-    for model in ("linear", "network"):
+    assert set(table["model"]) == {trial.label for trial in PLAN.runs.values()}
+    for model in set(table["model"]):
         assert tuple(table.loc[table["model"] == model, "output"]) == COEFFICIENTS
     np.testing.assert_allclose(table["validation_r2"], 1.0 - table["validation_nmse"])
 
