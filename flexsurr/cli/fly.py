@@ -13,6 +13,7 @@ from flexsurr.config.flight import CONTROL_NAMES, FlightCondition
 from flexsurr.evaluation.airliner_flights import Flight, flown, outputs
 from flexsurr.evaluation.airliner_models import REFERENCE
 from flexsurr.evaluation.airliner_modes import MODE_COLUMNS, airliner_modes, left_out_modes
+from flexsurr.evaluation.airliner_modes import elastic_modes as what_modes_are
 from flexsurr.flight.trim import TrimNotFound, trim, trim_envelope
 
 log = logging.getLogger(__name__)
@@ -25,10 +26,11 @@ def main(
     modes: Path,
     table: Path,
     left_out: Path,
+    elastic_modes: Path,
     doublets: Path,
     trims: Path,
 ) -> None:
-    """Write modes and what those left out change, the doublets' time histories, trims over the envelope."""
+    """Write eigenvalues and elastic modes, the doublets' time histories, and trims over the envelope."""
     plane = airliner_of(job)
     settings = plane.settings
     forms = forms_of(job, plane, selected_network(selection, runs), with_rebuild=False)
@@ -42,6 +44,7 @@ def main(
     write_frame(modes, frame)
     write_frame(table, frame[list(MODE_COLUMNS)])
     write_frame(left_out, left_out_modes(plane))
+    write_frame(elastic_modes, what_modes_are(plane))
     histories = []
     for control in CONTROL_NAMES:
         flight = Flight(0, control, settings.condition, settings.doublet_deg)
@@ -81,6 +84,7 @@ if __name__ == "__main__":
             "runs": "the folder of all runs",
             "modes": "eigenvalues with their errors",
             "table": "airliner_modes.csv",
+            "elastic_modes": "airliner_elastic_modes.csv",
             "left_out": "what the modes change that the aerodynamics does not know",
             "doublets": "time histories",
             "trims": "over the envelope",

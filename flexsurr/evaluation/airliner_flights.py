@@ -10,6 +10,7 @@ from flexsurr.aerodynamics.features import FEATURES
 from flexsurr.config.flight import CONTROL_NAMES, Control, FlightCondition, FlightSettings
 from flexsurr.flight.manoeuvres import doublet, fly
 from flexsurr.flight.model import features
+from flexsurr.flight.states import ATTITUDE, EARTH, RATES, VELOCITY
 from flexsurr.flight.trim import Trim
 from flexsurr.simulation.rhs import Array
 from flexsurr.simulation.trajectory import Trajectory
@@ -55,23 +56,21 @@ def flown(trim: Trim, flight: Flight, settings: FlightSettings) -> Trajectory:
 
 
 def outputs(trajectory: Trajectory) -> dict[str, Array]:
-    """What pilots read, over time: airspeed, angles and rates in degrees, altitude; and each η [kg^½ m]."""
-    x = trajectory.x
-    airspeed = np.linalg.norm(x[:, 6:9], axis=1)
-    angles = {
-        "alpha_deg": np.arctan2(x[:, 8], x[:, 6]),
-        "theta_deg": x[:, 4],
-        "q_deg_s": x[:, 10],
-        "beta_deg": np.arcsin(x[:, 7] / airspeed),
-        "phi_deg": x[:, 3],
-        "p_deg_s": x[:, 9],
-        "r_deg_s": x[:, 11],
-    }
-    result = {"airspeed_m_s": airspeed, "altitude_m": x[:, 2]}
-    result.update({name: np.degrees(values) for name, values in angles.items()})
-    etas = [name for name in trajectory.state_names if name.startswith("eta_") and "dot" not in name]
-    result.update({name: x[:, trajectory.state_names.index(name)] for name in etas})
-    return result
+    """Over time: airspeed, angle of attack and sideslip, every rigid-body state, and each η [kg^½ m].
+
+    Angles and rates in degrees; the unit ends the name.
+    """
+    states = dict(zip(trajectory.state_names, trajectory.x.T, strict=True))
+    u, v, w = (states[name] for name in VELOCITY)
+    airspeed = np.sqrt(u * u + v * v + w * w)
+    result = {name: states[name] for name in EARTH}
+    result |= {f"{name}_m_s": states[name] for name in VELOCITY}
+    result |= {f"{name}_deg": np.degrees(states[name]) for name in ATTITUDE}
+    result |= {f"{name}_deg_s": np.degrees(states[name]) for name in RATES}
+    result |= {"airspeed_m_s": airspeed, "alpha_deg": np.degrees(np.arctan2(w, u))}
+    result["beta_deg"] = np.degrees(np.arcsin(v / airspeed))
+    etas = [name for name in states if name.startswith("eta_") and "dot" not in name]
+    return result | {name: states[name] for name in etas}
 
 
 def peak_errors(

@@ -1,4 +1,4 @@
-"""Small motions of the airliner with a surrogate beside those with its lattice: Fig. 18."""
+"""Elastic modes of the airliner, and its small motions with a surrogate and with its lattice: Fig. 18."""
 
 from dataclasses import replace
 
@@ -10,10 +10,47 @@ from flexsurr.aerodynamics.quadratic import quadratic
 from flexsurr.evaluation.airliner_models import Airliner
 from flexsurr.flight.airliner import modal_motion
 from flexsurr.flight.linearise import linearise
+from flexsurr.flight.mode_names import mode_names, motions
 from flexsurr.flight.model import FlightModel
 from flexsurr.flight.trim import Trim, trim
 
 MODE_COLUMNS = ("mode", "reference_real", "reference_imag", "surrogate_real", "surrogate_imag")
+
+# The paper's numbers of the six modes that the aerodynamics knows (text to its Fig. 21): three symmetric
+# about the plane y = 0, three "asymmetric".
+PAPER_SYMMETRIC, PAPER_ANTISYMMETRIC = (1, 6, 7), (2, 5, 8)
+
+
+def elastic_modes(plane: Airliner) -> pd.DataFrame:
+    """What each elastic mode is, and which of the paper's it corresponds to.
+
+    Columns: mode, frequency_hz, symmetric, name, share_percent (of the mode's kinetic energy, in what the
+    name says), also, also_percent (the next largest), in_aerodynamics, paper_mode. Modes correspond by their
+    order among the symmetric and among the antisymmetric ones that the aerodynamics knows; `paper_mode` is
+    missing for others, and for all where there are not three of each.
+    """
+    modes, chosen = plane.modes, plane.settings.aerodynamic_modes
+    corresponding: dict[int, int] = {}
+    for symmetric, published in ((True, PAPER_SYMMETRIC), (False, PAPER_ANTISYMMETRIC)):
+        ours = [k for k in sorted(chosen) if modes.symmetric[k - 1] == symmetric]
+        corresponding |= dict(zip(ours, published, strict=False)) if len(ours) == len(published) else {}
+    corresponding = corresponding if len(corresponding) == len(chosen) else {}
+    rows = []
+    for k, (name, ranked) in enumerate(zip(mode_names(modes), motions(modes), strict=True), start=1):
+        rows.append(
+            {
+                "mode": k,
+                "frequency_hz": modes.frequency_hz[k - 1],
+                "symmetric": modes.symmetric[k - 1],
+                "name": name,
+                "share_percent": 100.0 * ranked[0].share,
+                "also": ranked[1].name,
+                "also_percent": 100.0 * ranked[1].share,
+                "in_aerodynamics": k in chosen,
+                "paper_mode": corresponding.get(k),
+            }
+        )
+    return pd.DataFrame(rows).astype({"paper_mode": "Int64"})
 
 
 def airliner_modes(reference: Trim, surrogate: Trim) -> pd.DataFrame:

@@ -1,35 +1,33 @@
 """The airliner in flight, lattice against network: eigenvalues and doublets (Figs. 18 to 21 of the study)."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from flexsurr.report.style import BLACK, BLUE, GREY, ORANGE, PAGE_IN, letter, new_figure, styled
+from flexsurr.config.flight import DoubletTimes
+from flexsurr.report.style import BLACK, BLUE, GREY, LOADED, ORANGE, PAGE_IN, letter, new_figure, styled
 
 LABELS: dict[str, str] = {
-    "airspeed_m_s": "airspeed [m/s]",
-    "alpha_deg": "angle of attack [°]",
-    "theta_deg": "pitch angle [°]",
-    "q_deg_s": "pitch rate [°/s]",
-    "beta_deg": "sideslip [°]",
-    "phi_deg": "bank angle [°]",
-    "p_deg_s": "roll rate [°/s]",
-    "r_deg_s": "yaw rate [°/s]",
-    "altitude_m": "altitude [m]",
-    "eta_1": r"$\eta_1$ [kg$^{1/2}$ m]",
-    "eta_2": r"$\eta_2$ [kg$^{1/2}$ m]",
-    "eta_5": r"$\eta_5$ [kg$^{1/2}$ m]",
-    "eta_6": r"$\eta_6$ [kg$^{1/2}$ m]",
-    "eta_7": r"$\eta_7$ [kg$^{1/2}$ m]",
+    "u_m_s": "u [m/s]",
+    "v_m_s": "v [m/s]",
+    "w_m_s": "w [m/s]",
+    "p_deg_s": "roll rate p [°/s]",
+    "q_deg_s": "pitch rate q [°/s]",
+    "r_deg_s": "yaw rate r [°/s]",
+    "phi_deg": "roll angle φ [°]",
+    "theta_deg": "pitch angle θ [°]",
+    "psi_deg": "yaw angle ψ [°]",
+    "altitude_m": "altitude h [m]",
+    "north_m": "position x [m]",
+    "east_m": "position y [m]",
 }
-ELEVATOR_SHOWN = ("airspeed_m_s", "alpha_deg", "theta_deg", "q_deg_s", "eta_1", "eta_5")
-AILERON_SHOWN = ("beta_deg", "phi_deg", "p_deg_s", "r_deg_s", "eta_2", "eta_6")
-RUDDER_SHOWN = ("beta_deg", "phi_deg", "p_deg_s", "r_deg_s", "eta_2", "eta_7")
-_SHADE = "#F6E7C8"
+LONGITUDINAL = ("u_m_s", "w_m_s", "q_deg_s", "theta_deg", "altitude_m", "north_m")
+LATERAL = ("v_m_s", "phi_deg", "p_deg_s", "r_deg_s", "psi_deg", "east_m")
+# What both do in a quantity that does not move: no percentage of its peak means anything.
+_STILL = 1e-3
+_PANELS_IN_TWO_COLUMNS = 6
 _RIGID = ("short period", "phugoid", "dutch roll", "roll", "spiral")
 
 
@@ -73,52 +71,99 @@ def figure_18(modes: pd.DataFrame) -> Figure:
 
 
 @styled
-def figure_19(flights: Mapping[str, pd.DataFrame], times_s: tuple[float, float, float]) -> Figure:
-    """Elevator doublet: longitudinal outputs and two symmetric modes, lattice against network.
+def figure_19(doublets: pd.DataFrame, doublet: DoubletTimes) -> Figure:
+    """Elevator doublet, longitudinal states: u, w, q, θ, h, x, lattice against network.
 
-    `flights`: for "vlm_frozen" and "network" the outputs over time, columns t_s and those shown.
+    `doublets`: for the models "vlm_frozen" and "network" the outputs over time after each control's doublet,
+    columns model, control, t_s and those shown.
     """
-    return _histories(flights, ELEVATOR_SHOWN, times_s)
+    return _histories(doublets, "elevator", LONGITUDINAL, doublet)
 
 
 @styled
-def figure_20(flights: Mapping[str, pd.DataFrame], times_s: tuple[float, float, float]) -> Figure:
-    """Aileron doublet: lateral outputs and two antisymmetric modes. As `figure_19`."""
-    return _histories(flights, AILERON_SHOWN, times_s)
+def figure_20(doublets: pd.DataFrame, doublet: DoubletTimes) -> Figure:
+    """The same elevator doublet, lateral-directional states: v, φ, p, r, ψ, y. As `figure_19`."""
+    return _histories(doublets, "elevator", LATERAL, doublet)
 
 
 @styled
-def figure_21(flights: Mapping[str, pd.DataFrame], times_s: tuple[float, float, float]) -> Figure:
-    """Rudder doublet: lateral outputs and two antisymmetric modes. As `figure_19`."""
-    return _histories(flights, RUDDER_SHOWN, times_s)
+def figure_21(doublets: pd.DataFrame, doublet: DoubletTimes, elastic: pd.DataFrame) -> Figure:
+    """The same elevator doublet, displacements of the modes that the aerodynamics knows. As `figure_19`.
+
+    `elastic`: `flexsurr.evaluation.airliner_modes.elastic_modes`, which names the modes.
+    """
+    known = elastic[elastic["in_aerodynamics"]]
+    return _histories(doublets, "elevator", _etas(known), doublet, known)
+
+
+@styled
+def aileron_doublet(doublets: pd.DataFrame, doublet: DoubletTimes, elastic: pd.DataFrame) -> Figure:
+    """Aileron doublet: lateral-directional states and antisymmetric modes. As `figure_21`."""
+    return _lateral(doublets, "aileron", doublet, elastic)
+
+
+@styled
+def rudder_doublet(doublets: pd.DataFrame, doublet: DoubletTimes, elastic: pd.DataFrame) -> Figure:
+    """Rudder doublet: lateral-directional states and antisymmetric modes. As `figure_21`."""
+    return _lateral(doublets, "rudder", doublet, elastic)
+
+
+def _lateral(doublets: pd.DataFrame, control: str, doublet: DoubletTimes, elastic: pd.DataFrame) -> Figure:
+    known = elastic[elastic["in_aerodynamics"] & ~elastic["symmetric"]]
+    return _histories(doublets, control, (*LATERAL, *_etas(known)), doublet, known)
+
+
+def _etas(elastic: pd.DataFrame) -> tuple[str, ...]:
+    return tuple(f"eta_{k}" for k in elastic["mode"])
 
 
 def _histories(
-    flights: Mapping[str, pd.DataFrame], shown: tuple[str, ...], times_s: tuple[float, float, float]
+    doublets: pd.DataFrame,
+    control: str,
+    shown: tuple[str, ...],
+    doublet: DoubletTimes,
+    elastic: pd.DataFrame | None = None,
 ) -> Figure:
-    figure = new_figure(PAGE_IN, 5.4)
-    grid = figure.subplots(3, 2, sharex=True)
-    lattice, network = flights["vlm_frozen"], flights["network"]
-    for ax, name in zip(grid.ravel(), shown, strict=True):
-        ax.axvspan(times_s[0], times_s[1], color=_SHADE, linewidth=0, zorder=0)
-        ax.axvspan(times_s[1], times_s[2], color=_SHADE, alpha=0.5, linewidth=0, zorder=0)
+    flown = doublets[doublets["control"] == control]
+    lattice, network = (flown[flown["model"] == model] for model in ("vlm_frozen", "network"))
+    names: dict[str, str] = {}
+    if elastic is not None:
+        names = dict(zip(_etas(elastic), elastic["name"].astype(str), strict=True))
+    columns = 2 if len(shown) <= _PANELS_IN_TWO_COLUMNS else 3
+    rows = -(-len(shown) // columns)
+    figure = new_figure(PAGE_IN, 1.75 * rows + 0.3)
+    grid = figure.subplots(rows, columns, sharex=True).ravel()
+    for ax, name in zip(grid, shown, strict=False):
+        ax.axvspan(doublet.start_s, doublet.middle_s, color=LOADED, linewidth=0, zorder=0)
+        ax.axvspan(doublet.middle_s, doublet.end_s, color=LOADED, alpha=0.5, linewidth=0, zorder=0)
         ax.plot(lattice["t_s"], lattice[name], color=BLACK, linewidth=1.6)
         ax.plot(network["t_s"], network[name], color=ORANGE, linewidth=1.0, linestyle=(0, (3, 2)))
-        ax.set_ylabel(LABELS[name])
-        peak = float(np.abs(lattice[name] - lattice[name].iloc[0]).max())
-        if peak > 0.0 and len(lattice) == len(network):
-            error = 100.0 * float(np.abs(network[name].to_numpy() - lattice[name].to_numpy()).max()) / peak
-            ax.set_title(f"largest difference {error:.2g} % of the peak", loc="left")
-    for ax in grid[-1]:
-        ax.set_xlabel("time [s]")
+        ax.set_ylabel(LABELS.get(name, rf"$\eta_{{{name.removeprefix('eta_')}}}$ [kg$^{{1/2}}$ m]"))
         ax.set_xlim(0.0, float(lattice["t_s"].max()))
+        said = (names.get(name, ""), _difference(lattice[name].to_numpy(), network[name].to_numpy()))
+        ax.set_title("\n".join(text for text in said if text), loc="left")
+    for ax in grid[len(shown) :]:
+        ax.set_visible(False)
+    for ax in grid[max(len(shown) - columns, 0) : len(shown)]:
+        ax.set_xlabel("time [s]")
+        ax.tick_params(labelbottom=True)
     handles = [
         Line2D([], [], color=BLACK, linewidth=1.6, label="vortex lattice"),
         Line2D([], [], color=ORANGE, linestyle=(0, (3, 2)), label="network"),
     ]
     figure.legend(handles=handles, loc="outside upper center", ncols=2)
-    letter(grid.ravel())
+    letter(grid[: len(shown)])
     return figure
+
+
+def _difference(lattice: np.ndarray, network: np.ndarray) -> str:
+    """The largest difference, in percent of the lattice's peak if it moves at all; "" if a flight ended."""
+    if len(lattice) != len(network):
+        return ""
+    difference, peak = float(np.abs(network - lattice).max()), float(np.abs(lattice - lattice[0]).max())
+    if peak <= _STILL * difference:
+        return f"lattice {peak:.0e}, network {difference:.0e} at most"
+    return f"off by {100.0 * difference / peak:.2g} % of the peak" if peak > 0.0 else ""
 
 
 def _name(ax: Axes, modes: pd.DataFrame) -> None:

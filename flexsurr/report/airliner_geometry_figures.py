@@ -1,7 +1,5 @@
 """The airliner: its panels in three dimensions, and where its mass is (Figs. 16 and 17 of the study)."""
 
-from collections.abc import Sequence
-
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
@@ -43,11 +41,11 @@ PARTS: dict[str, str] = {
 
 
 @styled
-def figure_16(model: StickModel, lattice: Lattice) -> Figure:
+def figure_16(modes: FreeModes, lattice: Lattice) -> Figure:
     """The panels of wing and tails, control surfaces in colour, with the fuselage as a body of revolution."""
     figure = new_figure(PAGE_IN, 4.4)
     ax = _axes(figure)
-    body = _fuselage(model)
+    body = _fuselage(modes.model)
     ax.add_collection3d(
         Poly3DCollection(body, facecolors="#EFEFEF", edgecolors="#DDDDDD", linewidths=0.2, clip_on=False)
     )
@@ -72,8 +70,9 @@ def figure_16(model: StickModel, lattice: Lattice) -> Figure:
 
 
 @styled
-def figure_17(model: StickModel, centre_of_gravity: Array) -> Figure:
+def figure_17(modes: FreeModes) -> Figure:
     """Every lumped mass where it is, its area in proportion, over the beams; and the parts' sum."""
+    model, centre_of_gravity = modes.model, modes.properties.centre_of_gravity
     figure = new_figure(PAGE_IN, 5.9)
     figure.set_layout_engine("constrained", compress=True)
     # equal aspects leave the two of different widths, so each has its own numbers
@@ -117,13 +116,17 @@ def figure_17(model: StickModel, centre_of_gravity: Array) -> Figure:
 
 
 @styled
-def mode_shapes(modes: FreeModes, shown: Sequence[int], largest_m: float = 2.5) -> Figure:
-    """Elastic modes of the numbers `shown` (from 1), each scaled to the same largest displacement."""
-    figure = new_figure(PAGE_IN, 1.9 * ((len(shown) + 1) // 2))
+def elastic_modes(modes: FreeModes, elastic: pd.DataFrame, largest_m: float = 2.5) -> Figure:
+    """Elastic modes, each scaled to the same largest displacement, with what they are and the paper's number.
+
+    `elastic`: `flexsurr.evaluation.airliner_modes.elastic_modes`, a row a mode that is shown.
+    """
+    figure = new_figure(PAGE_IN, 2.0 * ((len(elastic) + 1) // 2))
     nodes = modes.model.skeleton.nodes
     shapes = modes.shapes.reshape(len(nodes), 6, -1)
-    for place, number in enumerate(shown, start=1):
-        ax = figure.add_subplot((len(shown) + 1) // 2, 2, place, projection="3d", computed_zorder=False)
+    for place, (_, mode) in enumerate(elastic.iterrows(), start=1):
+        number = int(mode["mode"])
+        ax = figure.add_subplot((len(elastic) + 1) // 2, 2, place, projection="3d", computed_zorder=False)
         _bare(ax)
         moved = shapes[:, :3, number - 1]
         moved = moved * (largest_m / np.linalg.norm(moved, axis=1).max())
@@ -133,8 +136,8 @@ def mode_shapes(modes: FreeModes, shown: Sequence[int], largest_m: float = 2.5) 
                 for element in modes.model.skeleton.elements
             ]
             ax.add_collection3d(Line3DCollection(lines, colors=colour, linewidths=width, clip_on=False))
-        kind = "symmetric" if modes.symmetric[number - 1] else "antisymmetric"
-        ax.set_title(f"mode {number}: {modes.frequency_hz[number - 1]:.2f} Hz, {kind}", loc="left")
+        paper = "" if pd.isna(mode["paper_mode"]) else f" (the paper's {mode['paper_mode']})"
+        ax.set_title(f"{number}{paper}: {mode['frequency_hz']:.2f} Hz\n{mode['name']}", loc="left")
         _equal(ax, nodes, zoom=2.0)
     return figure
 

@@ -73,3 +73,27 @@ TABLES: dict[str, Product] = {
     "cost": Product("Cost and accuracy", ("cost-*-*",)),
     "learned_loads": Product("Learned loads", ("learned_loads-*",)),
 }
+
+# Of the airliner; its figures read the modes of its structure, its lattice, the times of its doublets, and
+# results by the names of their files.
+AIRLINER_FIGURES: dict[str, Product] = {
+    "figure_16": Product("The airliner and its panels", ("structure", "lattice")),
+    "figure_17": Product("Distribution of mass", ("structure",)),
+    "figure_18": Product("Eigenvalues in trim", ("modes",)),
+    "figure_19": Product("Elevator doublet: longitudinal states", ("doublets", "times")),
+    "figure_20": Product("Elevator doublet: lateral-directional states", ("doublets", "times")),
+    "figure_21": Product("Elevator doublet: modal displacements", ("doublets", "times", "elastic_modes")),
+    "aileron_doublet": Product("Aileron doublet", ("doublets", "times", "elastic_modes")),
+    "rudder_doublet": Product("Rudder doublet", ("doublets", "times", "elastic_modes")),
+    "elastic_modes": Product("Elastic modes", ("structure", "elastic_modes")),
+    "coefficient_errors": Product("Error against each input", ("errors",)),
+}
+
+AIRLINER_TABLES: dict[str, Product] = {
+    "airliner_accuracy": Product("Accuracy of the coefficients"),
+    "airliner_elastic_modes": Product("Elastic modes and their numbers in the paper"),
+    "airliner_modes": Product("Eigenvalues in trim"),
+    "airliner_left_out_modes": Product("What the modes left out of the aerodynamics change"),
+    "airliner_cost": Product("Cost of ninety flights"),
+    "airliner_limits": Product("States beyond the network's limits"),
+}

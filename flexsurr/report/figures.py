@@ -4,6 +4,16 @@ from collections.abc import Callable
 
 from matplotlib.figure import Figure
 
+from flexsurr.report.airliner_flight_figures import (
+    aileron_doublet,
+    figure_18,
+    figure_19,
+    figure_20,
+    figure_21,
+    rudder_doublet,
+)
+from flexsurr.report.airliner_geometry_figures import elastic_modes, figure_16, figure_17
+from flexsurr.report.airliner_learning_figures import coefficient_errors
 from flexsurr.report.architecture_figures import architecture_errors
 from flexsurr.report.beam_figures import figure_08, figure_09
 from flexsurr.report.cost_figures import cost_accuracy
@@ -13,6 +23,22 @@ from flexsurr.report.kinematic_figures import figure_03, figure_04
 from flexsurr.report.response_figures import figure_10, figure_12
 from flexsurr.report.schematics import figure_05, figure_06, figure_07, figure_11
 from flexsurr.report.training_figures import training_epochs, training_loss
+
+AIRLINER_DRAW: dict[str, Callable[..., Figure]] = {
+    draw.__name__: draw
+    for draw in (
+        figure_16,
+        figure_17,
+        figure_18,
+        figure_19,
+        figure_20,
+        figure_21,
+        aileron_doublet,
+        rudder_doublet,
+        elastic_modes,
+        coefficient_errors,
+    )
+}
 
 DRAW: dict[str, Callable[..., Figure]] = {
     draw.__name__: draw

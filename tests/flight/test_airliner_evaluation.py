@@ -1,5 +1,7 @@
 """What the airliner's models are compared by: flights, errors, limits, modes, costs; and its figures."""
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -23,13 +25,13 @@ from flexsurr.evaluation.airliner_flights import (
     random_flights,
 )
 from flexsurr.evaluation.airliner_models import REFERENCE, Airliner
-from flexsurr.evaluation.airliner_modes import MODE_COLUMNS, airliner_modes, left_out_modes
+from flexsurr.evaluation.airliner_modes import MODE_COLUMNS, airliner_modes, elastic_modes, left_out_modes
 from flexsurr.evaluation.columns import COST_COLUMNS
 from flexsurr.flight.airliner import flexible_airframe
 from flexsurr.flight.linear_aerodynamics import linear_aerodynamics
 from flexsurr.flight.trim import trim
-from flexsurr.report.airliner_flight_figures import figure_18, figure_19, figure_20, figure_21
-from flexsurr.report.airliner_geometry_figures import figure_16, figure_17, mode_shapes
+from flexsurr.report.catalogue import AIRLINER_FIGURES
+from flexsurr.report.figures import AIRLINER_DRAW
 from flexsurr.report.style import save
 
 CRUISE = FlightCondition(mach=0.7, altitude_m=10000.0)
@@ -157,23 +159,43 @@ def test_a_flight_without_a_trim_is_left_out(plane, gnba_derivatives):
     assert flights.empty
 
 
+def test_elastic_modes_are_named_by_what_moves_and_numbered_as_in_the_paper(plane):
+    frame = elastic_modes(plane).set_index("mode")
+    assert frame.loc[1, "name"] == "symmetric wing bending"
+    assert frame.loc[3, "name"] == "symmetric engine nodding"
+    assert frame.loc[4, "name"] == "antisymmetric lateral fuselage bending"
+    assert np.all((frame["share_percent"] > frame["also_percent"]) & (frame["share_percent"] < 100.0))
+    # 1, 6, 7 are symmetric in the paper, 2, 5, 8 are not; the third and fourth are left out of both
+    of_the_paper = frame["paper_mode"].dropna()
+    assert of_the_paper.to_dict() == {1: 1, 2: 2, 5: 6, 6: 5, 7: 8, 8: 7}
+    assert set(of_the_paper[frame["symmetric"]]) == {1, 6, 7}
+    other = replace(plane, settings=plane.settings.model_copy(update={"aerodynamic_modes": (1, 2, 5)}))
+    assert elastic_modes(other)["paper_mode"].isna().all()
+
+
 def test_figures_are_drawn(plane, trims, tmp_path):
-    model = plane.modes.model
-    histories = {}
-    for name, start in zip((REFERENCE, "network"), trims, strict=True):
-        run = flown(start, Flight(0, "elevator", CRUISE, 3.0), plane.settings)
-        histories[name] = pd.DataFrame({"t_s": run.t, **outputs(run)})
-    figures = {
-        "figure_16": figure_16(model, plane.airframe.lattice),
-        "figure_17": figure_17(model, plane.modes.properties.centre_of_gravity),
-        "figure_18": figure_18(airliner_modes(*trims)),
-        "elastic_modes": mode_shapes(plane.modes, [1, 2]),
-        **{draw.__name__: draw(histories, (0.5, 1.5, 2.5)) for draw in (figure_19, figure_20, figure_21)},
+    histories = []
+    for control in ("elevator", "aileron", "rudder"):
+        for name, start in zip((REFERENCE, "network"), trims, strict=True):
+            run = flown(start, Flight(0, control, CRUISE, 3.0), plane.settings)
+            histories.append(pd.DataFrame({"model": name, "control": control, "t_s": run.t, **outputs(run)}))
+    shown = {
+        "structure": plane.modes,
+        "lattice": plane.airframe.lattice,
+        "times": plane.settings.doublet,
+        "modes": airliner_modes(*trims),
+        "doublets": pd.concat(histories),
+        "elastic_modes": elastic_modes(plane),
     }
+    figures = {
+        name: AIRLINER_DRAW[name](*(shown[read] for read in product.reads))
+        for name, product in AIRLINER_FIGURES.items()
+        if name != "coefficient_errors"
+    }
+    assert AIRLINER_DRAW.keys() == AIRLINER_FIGURES.keys()
     for figure in figures.values():
         figure.canvas.draw()
     assert all(path.stat().st_size > 10_000 for path in save(figures["figure_18"], tmp_path / "figure_18"))
-    shown = [line for ax in figures["figure_18"].axes for line in ax.lines if line.get_marker() == "x"]
-    assert [len(line.get_xdata()) for line in shown] == [13, 5]
-    titles = [ax.get_title(loc="left") for ax in figures["figure_19"].axes]
-    assert all("of the peak" in title for title in titles)
+    crosses = [line for ax in figures["figure_18"].axes for line in ax.lines if line.get_marker() == "x"]
+    assert [len(line.get_xdata()) for line in crosses] == [13, 5]
+    assert all("of the peak" in ax.get_title(loc="left") for ax in figures["figure_19"].axes)

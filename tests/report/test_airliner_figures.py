@@ -6,19 +6,19 @@ import pytest
 from matplotlib.colors import to_hex
 
 from flexsurr.aerodynamics.features import COEFFICIENTS, FEATURES
+from flexsurr.config.flight import DoubletTimes
 from flexsurr.report.airliner_flight_figures import (
-    AILERON_SHOWN,
-    ELEVATOR_SHOWN,
-    RUDDER_SHOWN,
+    LATERAL,
+    LONGITUDINAL,
+    aileron_doublet,
     figure_18,
     figure_19,
     figure_20,
     figure_21,
+    rudder_doublet,
 )
 from flexsurr.report.airliner_learning_figures import coefficient_errors
 from flexsurr.report.style import BLUE
-
-TIMES_S = (0.5, 1.5, 2.5)
 
 
 @pytest.fixture
@@ -60,16 +60,63 @@ def test_eigenvalues_of_both_models_stand_where_they_are():
         np.testing.assert_array_equal(surrogate.get_xdata(), modes["surrogate_real"][:count])
 
 
-@pytest.mark.parametrize(
-    ("draw", "shown"),
-    [(figure_19, ELEVATOR_SHOWN), (figure_20, AILERON_SHOWN), (figure_21, RUDDER_SHOWN)],
+ELASTIC = pd.DataFrame(
+    {
+        "mode": [1, 2, 3, 5],
+        "symmetric": [True, False, True, False],
+        "in_aerodynamics": [True, True, False, True],
+        "name": ["wing bending", "wing torsion", "engine nodding", "engine sway"],
+    }
 )
-def test_a_doublet_shows_both_histories_and_their_difference(draw, shown):
+ETAS = ("eta_1", "eta_2", "eta_5")
+
+
+def histories(control: str, network: float) -> pd.DataFrame:
+    """Sines in every quantity; the network's are `network` times the lattice's."""
     t = np.linspace(0.0, 5.0, 101)
-    lattice = pd.DataFrame({"t_s": t, **{name: np.sin(t) for name in shown}})
-    network = pd.DataFrame({"t_s": t, **{name: 1.02 * np.sin(t) for name in shown}})
-    panels = draw({"vlm_frozen": lattice, "network": network}, TIMES_S).axes
+    return pd.concat(
+        pd.DataFrame(
+            {
+                "model": model,
+                "control": control,
+                "t_s": t,
+                **{name: factor * np.sin(t) for name in (*LONGITUDINAL, *LATERAL, *ETAS)},
+            }
+        )
+        for model, factor in (("vlm_frozen", 1.0), ("network", network))
+    )
+
+
+@pytest.mark.parametrize(
+    ("draw", "control", "shown"),
+    [
+        (figure_19, "elevator", LONGITUDINAL),
+        (figure_20, "elevator", LATERAL),
+        (figure_21, "elevator", ETAS),
+        (aileron_doublet, "aileron", (*LATERAL, "eta_2", "eta_5")),
+        (rudder_doublet, "rudder", (*LATERAL, "eta_2", "eta_5")),
+    ],
+)
+def test_a_doublet_shows_both_histories_and_their_difference(draw, control, shown):
+    doublets = pd.concat([histories(control, 1.02), histories("of another control", 7.0)])
+    reads = (doublets, DoubletTimes(), ELASTIC)
+    panels = [ax for ax in draw(*reads[: 3 if shown[-1] == "eta_5" else 2]).axes if ax.get_visible()]
     assert len(panels) == len(shown)
     for ax in panels:
-        np.testing.assert_array_equal(ax.lines[1].get_ydata(), network[shown[0]])
+        np.testing.assert_allclose(ax.lines[1].get_ydata(), 1.02 * ax.lines[0].get_ydata())
         assert "2 % of the peak" in ax.get_title(loc="left")
+
+
+def test_what_is_rounding_in_the_lattice_is_no_percentage():
+    doublets = histories("elevator", 1e9)
+    doublets[list(LATERAL)] *= 1e-12
+    titles = [ax.get_title(loc="left") for ax in figure_20(doublets, DoubletTimes()).axes]
+    assert all("lattice 1e-12, network 1e-03 at most" in title for title in titles)
+
+
+def test_antisymmetric_modes_are_named_where_they_are_shown():
+    titles = [
+        ax.get_title(loc="left")
+        for ax in rudder_doublet(histories("rudder", 1.0), DoubletTimes(), ELASTIC).axes
+    ]
+    assert [title.split("  ")[1].split("\n")[0] for title in titles[6:8]] == ["wing torsion", "engine sway"]

@@ -1,24 +1,7 @@
 # The airliner in flight: trims, modes and doublets, costs of random flights, figures.
 
+from flexsurr.report.catalogue import AIRLINER_FIGURES, AIRLINER_TABLES
 from flexsurr.workflow.airliner_flight_plan import flight_job
-
-AIRLINER_FIGURES = {
-    "figure_16": "The airliner and its panels",
-    "figure_17": "Distribution of mass",
-    "figure_18": "Eigenvalues in trim",
-    "figure_19": "Elevator doublet",
-    "figure_20": "Aileron doublet",
-    "figure_21": "Rudder doublet",
-    "elastic_modes": "Elastic modes",
-    "coefficient_errors": "Error against each input",
-}
-AIRLINER_TABLES = {
-    "airliner_accuracy": "Accuracy of the coefficients",
-    "airliner_modes": "Eigenvalues in trim",
-    "airliner_left_out_modes": "What the modes left out of the aerodynamics change",
-    "airliner_cost": "Cost of ninety flights",
-    "airliner_limits": "States beyond the network's limits",
-}
 
 
 def flight(wildcards):
@@ -33,6 +16,7 @@ rule fly:
         modes=f"{RESULTS}/evaluation/airliner/modes.parquet",
         table=f"{RESULTS}/tables/airliner_modes.csv",
         left_out=f"{RESULTS}/tables/airliner_left_out_modes.csv",
+        elastic_modes=f"{RESULTS}/tables/airliner_elastic_modes.csv",
         doublets=f"{RESULTS}/evaluation/airliner/doublets.parquet",
         trims=f"{RESULTS}/evaluation/airliner/trims.parquet",
     log:
@@ -52,7 +36,8 @@ rule fly:
     shell:
         "python -m flexsurr.cli.fly --job {params.job:q} --selection {input.selection:q}"
         " --runs {params.runs:q} --modes {output.modes:q} --table {output.table:q}"
-        " --left_out {output.left_out:q} --doublets {output.doublets:q} --trims {output.trims:q} > {log:q} 2>&1"
+        " --left_out {output.left_out:q} --elastic_modes {output.elastic_modes:q}"
+        " --doublets {output.doublets:q} --trims {output.trims:q} > {log:q} 2>&1"
 
 
 rule fly_randomly:
@@ -90,6 +75,7 @@ rule draw_airliner:
         selection=f"{RESULTS}/selected/airliner.json",
         modes=rules.fly.output.modes,
         doublets=rules.fly.output.doublets,
+        elastic_modes=rules.fly.output.elastic_modes,
     output:
         *(
             report(
@@ -97,7 +83,7 @@ rule draw_airliner:
                 caption=f"../report/airliner_{name}.rst",
                 category="airliner",
                 subcategory="figures",
-                labels={"figure": name, "shows": AIRLINER_FIGURES[name]},
+                labels={"figure": name, "shows": AIRLINER_FIGURES[name].title},
             )
             for name in AIRLINER_FIGURES
         ),
@@ -120,7 +106,7 @@ rule draw_airliner:
     shell:
         "python -m flexsurr.cli.draw_airliner --job {params.job:q} --selection {input.selection:q}"
         " --runs {params.runs:q} --modes {input.modes:q}"
-        " --doublets {input.doublets:q} --folder {params.folder:q} > {log:q} 2>&1"
+        " --doublets {input.doublets:q} --elastic_modes {input.elastic_modes:q} --folder {params.folder:q} > {log:q} 2>&1"
 
 
 rule show_airliner:
@@ -137,7 +123,7 @@ rule show_airliner:
                 caption=f"../report/{name}.rst",
                 category="airliner",
                 subcategory="tables",
-                labels={"table": name, "shows": AIRLINER_TABLES[name]},
+                labels={"table": name, "shows": AIRLINER_TABLES[name].title},
             )
             for name in AIRLINER_TABLES
         ),
@@ -151,7 +137,7 @@ rule show_airliner:
         runtime=30,
     params:
         job=lambda w: write(
-            "pages/airliner", {"titles": list(AIRLINER_TABLES.values())}
+            "pages/airliner", {"titles": [table.title for table in AIRLINER_TABLES.values()]}
         ),
         code=code("pages"),
         folder=f"{RESULTS}/tables/airliner",
