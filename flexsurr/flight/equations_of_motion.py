@@ -15,6 +15,9 @@ work in mean axes.
 import math
 from typing import Any, NamedTuple
 
+from numba import njit
+
+from flexsurr.aerodynamics.boundary import COMPILED
 from flexsurr.aerodynamics.features import (
     ALPHA,
     ALTITUDE,
@@ -32,8 +35,6 @@ from flexsurr.aerodynamics.features import (
     MODES,
     PITCH,
     RATE_P,
-    RATE_Q,
-    RATE_R,
     ROLL,
     SIDE,
     YAW,
@@ -76,27 +77,19 @@ class FlexibleAircraft(NamedTuple):
     aerodynamics: Any
 
 
-@implements_rhs(FlexibleAircraft, inline=False)
-def _motion(kernel, t, x, dx, work):
+@njit(**COMPILED)
+def write_features(kernel, t, x, features):
+    """Write the 25 inputs of the aerodynamics at time `t` [s] and state `x` (d,) into `features` (25,)."""
     k_modes = kernel.omega_squared.size
-    phi, theta, psi = x[3], x[4], x[5]
     u, v, w = x[6], x[7], x[8]
-    p, q, r = x[9], x[10], x[11]
     airspeed = math.sqrt(u * u + v * v + w * w)
-    altitude = x[2]
-
-    # features, coefficients and the aerodynamics' own scratch share `work`
-    features = work[0:INPUTS]
-    coefficients = work[INPUTS:SCRATCH]
-    scratch = work[SCRATCH:]
     over = 1.0 / airspeed
-    features[MACH] = airspeed / speed_of_sound(altitude)
-    features[ALTITUDE] = altitude
+    features[MACH] = airspeed / speed_of_sound(x[2])
+    features[ALTITUDE] = x[2]
     features[ALPHA] = math.atan2(w, u)
     features[BETA] = math.asin(v * over)
-    features[RATE_P] = p * over
-    features[RATE_Q] = q * over
-    features[RATE_R] = r * over
+    for i in range(3):
+        features[RATE_P + i] = x[9 + i] * over
     sign = 0.0
     if kernel.times[0] <= t < kernel.times[1]:
         sign = 1.0
@@ -108,8 +101,17 @@ def _motion(kernel, t, x, dx, work):
         place = int(kernel.places[i])
         features[FIRST_ETA + i] = x[RIGID_STATES + place] if place >= 0 else 0.0
         features[FIRST_ETA_RATE + i] = x[RIGID_STATES + k_modes + place] * over if place >= 0 else 0.0
-    mapping(kernel.aerodynamics, features, coefficients, scratch)
-    pressure = 0.5 * density(altitude) * airspeed * airspeed * kernel.area
+
+
+@njit(**COMPILED)
+def write_motion(kernel, x, coefficients, dx):
+    """Write ẋ (d,) into `dx`, with the 12 coefficients given."""
+    k_modes = kernel.omega_squared.size
+    phi, theta, psi = x[3], x[4], x[5]
+    u, v, w = x[6], x[7], x[8]
+    p, q, r = x[9], x[10], x[11]
+    speed_squared = u * u + v * v + w * w
+    pressure = 0.5 * density(x[2]) * speed_squared * kernel.area
 
     sin_phi, cos_phi = math.sin(phi), math.cos(phi)
     sin_theta, cos_theta = math.sin(theta), math.cos(theta)
@@ -161,3 +163,26 @@ def _motion(kernel, t, x, dx, work):
         place = int(kernel.places[i])
         if place >= 0:
             dx[RIGID_STATES + k_modes + place] += pressure * coefficients[FIRST_MODAL + i]
+
+
+@implements_rhs(FlexibleAircraft, inline=False)
+def _motion(kernel, t, x, dx, work):
+    # features, coefficients and the aerodynamics' own scratch share `work`
+    features = work[0:INPUTS]
+    coefficients = work[INPUTS:SCRATCH]
+    write_features(kernel, t, x, features)
+    mapping(kernel.aerodynamics, features, coefficients, work[SCRATCH:])
+    write_motion(kernel, x, coefficients, dx)
+
+
+@njit(cache=True, error_model="numpy")
+def features_along(kernel, t, x, features):
+    """`write_features` as a call from Python, row by row: `t` (m,), `x` (m, d), `features` (m, 25)."""
+    for row in range(t.size):
+        write_features(kernel, t[row], x[row], features[row])
+
+
+@njit(cache=True, error_model="numpy")
+def motion_with(kernel, x, coefficients, dx):
+    """`write_motion` as a call from Python."""
+    write_motion(kernel, x, coefficients, dx)

@@ -5,10 +5,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexsurr.aerodynamics.features import CONTROLS, MODES
-from flexsurr.aerodynamics.standard_atmosphere import GRAVITY, speed_of_sound
+from flexsurr.aerodynamics.features import CONTROLS, FEATURES, MODES
+from flexsurr.aerodynamics.standard_atmosphere import GRAVITY
 from flexsurr.flight.airliner import DEFAULT_MODES
-from flexsurr.flight.equations_of_motion import RIGID_STATES, SCRATCH, FlexibleAircraft
+from flexsurr.flight.equations_of_motion import RIGID_STATES, SCRATCH, FlexibleAircraft, features_along
 from flexsurr.flight.modes import FreeModes
 from flexsurr.flight.states import state_names, state_units
 from flexsurr.simulation.mapping import CompiledMapping
@@ -106,22 +106,14 @@ class FlightModel:
 
 def features(model: FlightModel, t: Array, x: Array) -> Array:
     """The 25 inputs (m, 25) of the aerodynamics along a trajectory: times (m,) and states (m, d)."""
-    k = len(model.modes.omega_rad_s)
-    airspeed = np.linalg.norm(x[:, 6:9], axis=1)
-    columns = [airspeed / np.array([speed_of_sound(h) for h in x[:, 2]]), x[:, 2]]
-    columns += [np.arctan2(x[:, 8], x[:, 6]), np.arcsin(x[:, 7] / airspeed)]
-    columns += [x[:, 9 + axis] / airspeed for axis in range(3)]
-    command, sign = np.zeros(CONTROLS), np.zeros(len(t))
-    if model.doublet is not None:
-        command = model.doublet.command
-        begin, middle, end = model.doublet.times_s
-        sign = np.where((t >= begin) & (t < middle), 1.0, np.where((t >= middle) & (t < end), -1.0, 0.0))
-    columns += [model.controls[i] + sign * command[i] for i in range(CONTROLS)]
-    places = [*(number - 1 for number in model.chosen), *(-1 for _ in range(MODES - len(model.chosen)))]
-    nothing = np.zeros(len(t))
-    columns += [x[:, RIGID_STATES + place] if place >= 0 else nothing for place in places]
-    columns += [x[:, RIGID_STATES + k + place] / airspeed if place >= 0 else nothing for place in places]
-    return np.stack(columns, axis=1)
+    inputs = np.empty((len(t), len(FEATURES)))
+    features_along(airless(model), np.ascontiguousarray(t), np.ascontiguousarray(x), inputs)
+    return inputs
+
+
+def airless(model: FlightModel) -> FlexibleAircraft:
+    """The constants of `model` without its aerodynamics, for `features_along` and `motion_with`."""
+    return _kernel(model)._replace(aerodynamics=())
 
 
 def _kernel(model: FlightModel) -> FlexibleAircraft:

@@ -158,7 +158,12 @@ def test_features_in_the_equations_are_those_along_a_trajectory(gnba_modes):
             force = np.array([sine * lift - cosine * drag, side, -cosine * lift - sine * drag])
             assert added[6:9] == pytest.approx(pressure * force / 55764.0, rel=1e-9, abs=1e-9)
             assert added[[20, 21, 24, 25, 26, 27]] == pytest.approx(pressure * inputs[6:], rel=1e-9, abs=1e-6)
-    assert features(model, np.array([1.0]), x[None])[0, 0] == pytest.approx(speed / speed_of_sound(x[2]))
+    u, v, w = x[6:9]
+    by_hand = [speed / speed_of_sound(x[2]), x[2], np.arctan(w / u), np.arcsin(v / speed), *x[9:12] / speed]
+    assert features(model, np.array([1.0]), x[None])[0, :7] == pytest.approx(by_hand)
+    etas = x[[12, 13, 16, 17, 18, 19]]
+    rates = x[[20, 21, 24, 25, 26, 27]] / speed
+    assert features(model, np.array([1.0]), x[None])[0, 13:] == pytest.approx(np.concatenate([etas, rates]))
 
 
 def test_the_lattice_rebuilt_at_every_call_can_be_flown(gnba_modes):

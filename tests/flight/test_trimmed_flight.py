@@ -12,6 +12,7 @@ from flexsurr.flight.linearise import linearise, natural_modes, state_matrix
 from flexsurr.flight.manoeuvres import doublet, fly
 from flexsurr.flight.model import FlightModel, features
 from flexsurr.flight.states import state_names
+from flexsurr.flight.stepped import fly_stepped
 from flexsurr.flight.trim import TrimNotFound, trim, trim_envelope
 
 CRUISE = FlightCondition(mach=0.7, altitude_m=10000.0)
@@ -134,6 +135,19 @@ def test_the_opposite_doublet_mirrors_the_flight(cruise, control):
     signs[[1, 3, 5, 7, 9, 11]] = -1.0
     signs[12:20] = signs[20:] = np.where(cruise.model.modes.symmetric, 1.0, -1.0)
     assert runs[1].x == pytest.approx(runs[0].x * signs, abs=1e-6)
+
+
+def test_stepped_from_python_the_flight_is_the_same(cruise):
+    pilot = doublet("rudder", np.radians(2.0))
+    whole = fly(cruise, pilot, duration_s=3.0)
+    stepped = fly_stepped(cruise, pilot, cruise.model.aerodynamics, duration_s=3.0)
+    assert stepped.completed
+    assert stepped.x == pytest.approx(whole.x, rel=1e-9, abs=1e-9)
+    assert (stepped.t.tolist(), stepped.evaluations) == (whole.t.tolist(), whole.evaluations)
+    with pytest.raises(ValueError, match=r"jumps at 0\.5 s, within a step of 0\.3 s"):
+        fly_stepped(cruise, pilot, cruise.model.aerodynamics, duration_s=3.0, step_s=0.3)
+    lost = fly_stepped(cruise, None, lambda u: np.full(12, np.nan), duration_s=1.0)
+    assert (lost.completed, len(lost.t), lost.reason) == (False, 1, "not finite after 0 s")
 
 
 def test_steps_half_as_long_change_a_flight_by_little(cruise):
