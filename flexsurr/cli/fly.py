@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from flexsurr.cli.command import Job, command
-from flexsurr.cli.flying import airliner_of, forms_of, selected_network
+from flexsurr.cli.flying import airliner_of, forms_of, selected_networks
 from flexsurr.cli.frames import write_frame
 from flexsurr.config.flight import CONTROL_NAMES, FlightCondition
 from flexsurr.evaluation.airliner_flights import Flight, flown, outputs
@@ -33,7 +33,8 @@ def main(
     """Write eigenvalues and elastic modes, the doublets' time histories, and trims over the envelope."""
     plane = airliner_of(job)
     settings = plane.settings
-    forms = forms_of(job, plane, selected_network(selection, runs), with_rebuild=False)
+    network = selected_networks(selection, runs)["network"]
+    forms = forms_of(job, plane, {"network": network}, with_rebuild=False)
     cruise = {}
     for name, mapping in forms.items():
         try:

@@ -1,10 +1,12 @@
-"""What the commands that fly the airliner share: its model, the lattice's forms, and the chosen network."""
+"""What the commands that fly the airliner share: its model, the lattice's forms, and the chosen networks."""
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
 
 from flexsurr.cli.command import Job
 from flexsurr.config.aircraft import Aircraft
+from flexsurr.config.feature_limits import FeatureLimits
 from flexsurr.config.flight import FlightSettings
 from flexsurr.config.panels import PanelCounts
 from flexsurr.evaluation.airliner_models import Airliner, airliner, lattices
@@ -18,23 +20,32 @@ def airliner_of(job: Job) -> Airliner:
     return airliner(
         Aircraft.model_validate(job["aircraft"]),
         FlightSettings.model_validate(job["flight"]),
+        FeatureLimits.model_validate(job["limits"]),
         PanelCounts.model_validate(job["panels"]),
     )
 
 
 def forms_of(
-    job: Job, plane: Airliner, network: CoefficientNetwork, with_rebuild: bool
+    job: Job, plane: Airliner, networks: Mapping[str, CoefficientNetwork], with_rebuild: bool
 ) -> dict[str, CompiledMapping]:
-    """The lattice's forms with the samples' boundary condition, and the network."""
+    """The lattice's forms with the samples' boundary condition, and the networks."""
     return {
         **lattices(plane, job["boundary_condition"], with_rebuild=with_rebuild),
-        "network": network.compiled(),
+        **{label: network.compiled() for label, network in networks.items()},
     }
 
 
-def selected_network(selection: Path, runs: Path) -> CoefficientNetwork:
-    """The network that `selection` names. Raises StorageError where it names none."""
+def selected_networks(selection: Path, runs: Path) -> dict[str, CoefficientNetwork]:
+    """The networks that `selection` names by their labels, "network" first.
+
+    Raises StorageError where it names no "network".
+    """
     chosen = json.loads(selection.read_text(encoding="utf-8"))
     if "network" not in chosen:
         raise StorageError(f"{selection}: names no network")
-    return load_coefficient_network(runs / chosen["network"]["run_id"] / "weights.npz")
+    labels = sorted(chosen, key=lambda label: label != "network")
+    return {
+        label: load_coefficient_network(runs / chosen[label]["run_id"] / "weights.npz")
+        for label in labels
+        if chosen[label]["model"] == "network"
+    }

@@ -5,6 +5,7 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
+from flexsurr.config.flight import Control
 from flexsurr.config.merging import Source, build
 from flexsurr.config.reading import read_yaml
 from flexsurr.config.schema import Record
@@ -48,6 +49,15 @@ class FeatureLimits(Record):
     delta_r_deg: FeatureLimit
     eta: SixLimits
     eta_dot_over_V: SixLimits
+
+    def deflection_deg(self, control: Control) -> float:
+        """How far a doublet of `control` may go to either side within its limits."""
+        moved = {
+            "elevator": (self.delta_e_left_deg, self.delta_e_right_deg),
+            "aileron": (self.delta_a_left_deg, self.delta_a_right_deg),
+            "rudder": (self.delta_r_deg,),
+        }
+        return min(min(-limit.low, limit.high) for limit in moved[control])
 
     @model_validator(mode="after")
     def _means_something(self) -> Self:

@@ -1,22 +1,25 @@
 """Flights of the airliner by which models are compared: what they are, what they give, how far apart."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
 
 from flexsurr.aerodynamics.features import FEATURES
+from flexsurr.config.feature_limits import FeatureLimits
 from flexsurr.config.flight import CONTROL_NAMES, Control, FlightCondition, FlightSettings
 from flexsurr.flight.manoeuvres import doublet, fly
-from flexsurr.flight.model import features
+from flexsurr.flight.model import Doublet, features
 from flexsurr.flight.states import ATTITUDE, EARTH, RATES, VELOCITY
-from flexsurr.flight.trim import Trim
+from flexsurr.flight.stepped import fly_stepped
+from flexsurr.flight.trim import Trim, TrimNotFound
 from flexsurr.simulation.rhs import Array
 from flexsurr.simulation.trajectory import Trajectory
 
 LONGITUDINAL = ("airspeed_m_s", "alpha_deg", "theta_deg", "q_deg_s")
 LATERAL = ("beta_deg", "phi_deg", "p_deg_s", "r_deg_s")
+_MOST_DRAWS = 200
 # What each doublet is meant to move; the rest hardly moves, and its error says nothing.
 MOVED: dict[Control, tuple[str, ...]] = {"elevator": LONGITUDINAL, "aileron": LATERAL, "rudder": LATERAL}
 
@@ -31,28 +34,62 @@ class Flight:
     amplitude_deg: float
 
 
-def random_flights(settings: FlightSettings) -> list[Flight]:
-    """Each doublet as often as the settings say, at random conditions and amplitudes.
+def random_flights(
+    settings: FlightSettings, limits: FeatureLimits, has_trim: Callable[[FlightCondition], bool]
+) -> list[Flight]:
+    """Each doublet as often as the settings say, at random conditions and amplitudes within `limits`.
 
-    Flight k's numbers come from `default_rng([seed, k])`: they don't depend on how many there are.
+    Conditions that have no trim are drawn anew. Flight k's numbers come from `default_rng([seed, k])`: they
+    don't depend on how many there are. Raises TrimNotFound where none of many conditions has a trim, and
+    ValueError for a control whose limits are narrower than the least amplitude.
     """
     random = settings.random_flights
     flights = []
     for number in range(len(CONTROL_NAMES) * random.of_each_doublet):
         draw = np.random.default_rng([random.seed, number])
-        mach, altitude, amplitude = (
-            float(draw.uniform(*limits)) for limits in (random.mach, random.altitude_m, random.amplitude_deg)
-        )
         # neighbours are different doublets, so that the first few hold each of them
         control = CONTROL_NAMES[number % len(CONTROL_NAMES)]
-        flights.append(Flight(number, control, FlightCondition(mach=mach, altitude_m=altitude), amplitude))
+        most = limits.deflection_deg(control)
+        if most <= random.least_deg:
+            raise ValueError(f"{control}: limits of {most:g}° leave no amplitude of {random.least_deg:g}°")
+        condition = _with_trim(draw, limits, has_trim)
+        amplitude = float(draw.uniform(random.least_deg, most) * draw.choice([-1.0, 1.0]))
+        flights.append(Flight(number, control, condition, amplitude))
     return flights
+
+
+def _with_trim(
+    draw: np.random.Generator, limits: FeatureLimits, has_trim: Callable[[FlightCondition], bool]
+) -> FlightCondition:
+    for _ in range(_MOST_DRAWS):
+        mach, altitude = (
+            float(draw.uniform(limit.low, limit.high)) for limit in (limits.mach, limits.altitude_m)
+        )
+        condition = FlightCondition(mach=mach, altitude_m=altitude)
+        if has_trim(condition):
+            return condition
+    raise TrimNotFound(f"none of {_MOST_DRAWS} conditions within the limits has a trim")
 
 
 def flown(trim: Trim, flight: Flight, settings: FlightSettings) -> Trajectory:
     """The flight from its `trim`."""
-    pilot = doublet(flight.control, np.radians(flight.amplitude_deg), settings.doublet)
-    return fly(trim, pilot, settings.duration_s, settings.step_s)
+    return fly(trim, _pilot(flight, settings), settings.duration_s, settings.step_s)
+
+
+def flown_stepped(
+    trim: Trim, flight: Flight, settings: FlightSettings, coefficients: Callable[[Array], Array]
+) -> Trajectory:
+    """The same flight stepped from Python, with the coefficients of any function."""
+    return fly_stepped(trim, _pilot(flight, settings), coefficients, settings.duration_s, settings.step_s)
+
+
+def inputs_along(trim: Trim, flight: Flight, trajectory: Trajectory, settings: FlightSettings) -> Array:
+    """What the aerodynamics was given at the samples of a flight (m, 25)."""
+    return features(trim.model.with_doublet(_pilot(flight, settings)), trajectory.t, trajectory.x)
+
+
+def _pilot(flight: Flight, settings: FlightSettings) -> Doublet:
+    return doublet(flight.control, np.radians(flight.amplitude_deg), settings.doublet)
 
 
 def outputs(trajectory: Trajectory) -> dict[str, Array]:
@@ -99,8 +136,7 @@ def limit_exceedances(
     Columns: flight, control, input, samples, outside (samples), worst (how far beyond, in halves of the
     interval).
     """
-    pilot = doublet(flight.control, np.radians(flight.amplitude_deg), settings.doublet)
-    inputs = features(trim.model.with_doublet(pilot), trajectory.t, trajectory.x)
+    inputs = inputs_along(trim, flight, trajectory, settings)
     beyond = np.maximum(low - inputs, inputs - high)
     # what rounding makes of a value on the limit itself is not outside
     outside = beyond > 1e-9 * np.maximum(np.abs(low), np.abs(high))

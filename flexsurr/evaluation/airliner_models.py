@@ -9,6 +9,7 @@ from flexsurr.aerodynamics.mach_grid import fixed_machs, mach_grid
 from flexsurr.aerodynamics.quadratic import quadratic
 from flexsurr.aerodynamics.vortex_lattice import rebuilt
 from flexsurr.config.aircraft import Aircraft
+from flexsurr.config.feature_limits import FeatureLimits
 from flexsurr.config.flight import FlightSettings
 from flexsurr.config.panels import PanelCounts
 from flexsurr.flight import FreeModes, free_modes, stick_model
@@ -28,9 +29,13 @@ _LARGEST_MACH = 0.94
 
 @dataclass(frozen=True, eq=False)
 class Airliner:
-    """An aircraft with its modes, its airframe, and the settings of its flights."""
+    """An aircraft with its modes, its airframe, the settings of its flights, and what it may meet in them.
+
+    `limits` are those of the samples that surrogates are trained on.
+    """
 
     settings: FlightSettings
+    limits: FeatureLimits
     modes: FreeModes
     airframe: Airframe
 
@@ -39,10 +44,12 @@ class Airliner:
         return FlightModel(self.modes, aerodynamics, chosen=self.settings.aerodynamic_modes)
 
 
-def airliner(aircraft: Aircraft, settings: FlightSettings, counts: PanelCounts | None = None) -> Airliner:
-    """The airliner of an aircraft file, flown by `settings`."""
+def airliner(
+    aircraft: Aircraft, settings: FlightSettings, limits: FeatureLimits, counts: PanelCounts | None = None
+) -> Airliner:
+    """The airliner of an aircraft file, flown by `settings` within `limits`."""
     modes = free_modes(stick_model(aircraft), settings.elastic_modes)
-    return Airliner(settings, modes, flexible_airframe(modes, counts, settings.aerodynamic_modes))
+    return Airliner(settings, limits, modes, flexible_airframe(modes, counts, settings.aerodynamic_modes))
 
 
 def frozen_at(
@@ -60,11 +67,11 @@ def lattices(
 ) -> dict[str, CompiledMapping]:
     """The lattice's forms by name: vlm_rebuild (if asked for), vlm_frozen, quadratic.
 
-    The frozen ones know the Mach numbers of the settings and a little beyond. The quadratic form's boundary
-    condition is linear, whatever that of the others.
+    The frozen ones know the Mach numbers of the settings and the limits, and a little beyond. The quadratic
+    form's boundary condition is linear, whatever that of the others.
     """
     settings = plane.settings
-    machs = [*settings.envelope_mach, *settings.random_flights.mach, settings.condition.mach]
+    machs = [*settings.envelope_mach, plane.limits.mach.low, plane.limits.mach.high, settings.condition.mach]
     grid = mach_grid(max(min(machs) - _MACH_MARGIN, 0.0), min(max(machs) + _MACH_MARGIN, _LARGEST_MACH))
     forms = {"vlm_rebuild": rebuilt(plane.airframe, boundary_condition)} if with_rebuild else {}
     return {

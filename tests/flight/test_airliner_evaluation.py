@@ -1,15 +1,17 @@
 """What the airliner's models are compared by: flights, errors, limits, modes, costs; and its figures."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 
+from flexsurr.config.feature_limits import load_feature_limits
 from flexsurr.config.flight import FlightCondition, FlightSettings, RandomFlights
 from flexsurr.config.panels import PanelCounts
 from flexsurr.evaluation.airliner_cost import (
-    PAPER_PERCENT,
+    TORCH,
     airliner_cost,
     as_cost_rows,
     exceedance_summary,
@@ -29,12 +31,13 @@ from flexsurr.evaluation.airliner_modes import MODE_COLUMNS, airliner_modes, ela
 from flexsurr.evaluation.columns import COST_COLUMNS
 from flexsurr.flight.airliner import flexible_airframe
 from flexsurr.flight.linear_aerodynamics import linear_aerodynamics
-from flexsurr.flight.trim import trim
+from flexsurr.flight.trim import TrimNotFound, trim
 from flexsurr.report.catalogue import AIRLINER_FIGURES
 from flexsurr.report.figures import AIRLINER_DRAW
 from flexsurr.report.style import save
 
 CRUISE = FlightCondition(mach=0.7, altitude_m=10000.0)
+LIMITS = load_feature_limits(Path(__file__).resolve().parents[2] / "config/aircraft/gnba_limits.yaml")
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +46,7 @@ def plane(gnba_modes):
         aircraft="gnba", duration_s=1.0, random_flights=RandomFlights(of_each_doublet=1, rebuild_flights=1)
     )
     coarse = PanelCounts(wing=(10, 2), horizontal_tail=(4, 2), vertical_tail=(4, 2))
-    return Airliner(settings, gnba_modes, flexible_airframe(gnba_modes, coarse))
+    return Airliner(settings, LIMITS, gnba_modes, flexible_airframe(gnba_modes, coarse))
 
 
 @pytest.fixture(scope="module")
@@ -57,16 +60,35 @@ def trims(plane, gnba_derivatives, surrogate):
     return [trim(plane.flying(mapping), CRUISE) for mapping in (gnba_derivatives, surrogate)]
 
 
+def anywhere(condition: FlightCondition) -> bool:
+    return True
+
+
 def test_random_flights_are_each_doublet_as_often_within_limits_whatever_their_number():
     settings = FlightSettings(aircraft="gnba")
-    flights = random_flights(settings)
+    flights = random_flights(settings, LIMITS, anywhere)
     assert len(flights) == 90
     assert pd.Series([flight.control for flight in flights]).value_counts().tolist() == [30, 30, 30]
-    assert all(0.65 <= flight.condition.mach <= 0.75 for flight in flights)
-    assert all(9000.0 <= flight.condition.altitude_m <= 11000.0 for flight in flights)
-    assert all(1.0 <= flight.amplitude_deg <= 5.0 for flight in flights)
+    drawn = np.array([(f.condition.mach, f.condition.altitude_m, f.amplitude_deg) for f in flights])
+    assert np.all((drawn[:, 0] >= LIMITS.mach.low) & (drawn[:, 0] <= LIMITS.mach.high))
+    assert np.all((drawn[:, 1] >= LIMITS.altitude_m.low) & (drawn[:, 1] <= LIMITS.altitude_m.high))
+    assert np.all((np.abs(drawn[:, 2]) >= 1.0) & (np.abs(drawn[:, 2]) <= 6.0))
+    # all of it, not a part
+    assert np.all(np.ptp(drawn, axis=0) > [0.23, 4600.0, 11.0])
     fewer = FlightSettings(aircraft="gnba", random_flights=RandomFlights(of_each_doublet=2))
-    assert random_flights(fewer) == flights[:6]
+    assert random_flights(fewer, LIMITS, anywhere) == flights[:6]
+
+
+def test_conditions_without_a_trim_are_drawn_anew():
+    settings = FlightSettings(aircraft="gnba")
+    fast = random_flights(settings, LIMITS, lambda condition: condition.mach > 0.7)
+    assert len(fast) == 90
+    assert min(flight.condition.mach for flight in fast) > 0.7
+    with pytest.raises(TrimNotFound, match="none of 200 conditions within the limits has a trim"):
+        random_flights(settings, LIMITS, lambda condition: False)
+    timid = FlightSettings(aircraft="gnba", random_flights=RandomFlights(least_deg=6.0))
+    with pytest.raises(ValueError, match="elevator: limits of 6° leave no amplitude of 6°"):
+        random_flights(timid, LIMITS, anywhere)
 
 
 def test_a_flight_is_its_own_reference_and_errors_are_in_percent_of_the_peak(plane, trims):
@@ -132,8 +154,10 @@ def test_costs_are_relative_to_each_lattice_over_the_flights_both_flew(plane, gn
         "network": lambda condition: surrogate,
     }
     limits = (np.full(25, -1e6), np.full(25, 1e6))
-    flights, left = fly_all(plane, forms, random_flights(plane.settings), limits)
-    assert flights["model"].value_counts().to_dict() == {REFERENCE: 3, "network": 3, "vlm_rebuild": 1}
+    drawn = random_flights(plane.settings, LIMITS, lambda condition: condition.mach > 0.65)
+    flights, left = fly_all(plane, forms, drawn, limits, in_torch=surrogate)
+    number = {REFERENCE: 3, "network": 3, TORCH: 3, "vlm_rebuild": 1}
+    assert flights["model"].value_counts().to_dict() == number
     assert flights["completed"].all()
     assert left["outside"].sum() == 0
     table = airliner_cost(flights)
@@ -148,7 +172,16 @@ def test_costs_are_relative_to_each_lattice_over_the_flights_both_flew(plane, gn
     assert cost.loc["network", "vlm_rebuild_flights"] == 1
     everywhere = (100.0 * walls["network"] / walls["vlm_rebuild"].mean()).mean()
     assert cost.loc["network", "relative_to_vlm_rebuild_percent"] == pytest.approx(everywhere)
-    assert cost.loc["network", "paper_percent"] == PAPER_PERCENT
+    assert cost.loc["network", "paper_percent"] == 0.995
+    assert cost.loc[TORCH, "paper_percent"] == 55.0
+    in_torch = rows[rows["implementation"] == "torch"]
+    assert in_torch["model"].tolist() == ["network"]
+    # it flies what the compiled one does, so that they err alike
+    errors = cost["worst_error_percent"]
+    assert errors[TORCH] == pytest.approx(errors["network"], rel=1e-4)
+    # measured on the first flight alone, and a part of the whole
+    assert flights["aerodynamics_percent"].notna().sum() == 4
+    assert np.all((cost["aerodynamics_percent"] > 0.0) & (cost["aerodynamics_percent"] < 150.0))
     assert cost.loc["network", "worst_error_percent"] > cost.loc["network", "median_error_percent"] > 0.0
     assert cost.loc["vlm_rebuild", "worst_error_percent"] == 0.0  # the same aerodynamics as the reference
 

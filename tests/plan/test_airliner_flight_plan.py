@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from flexsurr.cli.flying import airliner_of, selected_network
+from flexsurr.cli.flying import airliner_of, selected_networks
 from flexsurr.config.airliner import AirlinerFiles, load_airliner
 from flexsurr.storage import StorageError
 from flexsurr.workflow.airliner_flight_plan import flight_job
@@ -18,6 +18,7 @@ def test_a_job_is_plain_data_from_which_the_airliner_comes_back():
     job = json.loads(json.dumps(flight_job(files)))
     plane = airliner_of(job)
     assert plane.settings == files.flight
+    assert plane.limits == files.limits
     assert plane.modes.model.aircraft == files.aircraft
     panels = files.sweep.dataset.panels
     assert (
@@ -32,4 +33,4 @@ def test_a_selection_without_a_network_is_refused(tmp_path: Path):
     selection = tmp_path / "airliner.json"
     selection.write_text(json.dumps({"linear": {"run_id": "airliner-linear-0"}}))
     with pytest.raises(StorageError, match="names no network"):
-        selected_network(selection, tmp_path)
+        selected_networks(selection, tmp_path)

@@ -4,7 +4,6 @@ import dataclasses
 
 import numpy as np
 import pytest
-import torch
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -15,6 +14,7 @@ from flexsurr.surrogates.coefficient_network import (
     save_coefficient_network,
     side_by_side,
 )
+from flexsurr.training.coefficient_torch import TorchCoefficients, export_error
 
 INPUTS, OUTPUTS = 25, 12
 
@@ -44,35 +44,18 @@ def inputs(network: CoefficientNetwork, seed: int, count: int, beyond: float = 1
     return 0.5 * (middle + half * unit)
 
 
-def in_torch(network: CoefficientNetwork) -> torch.nn.Module:
-    """The same layers as somebody trains them in torch."""
-    hidden, output = (
-        torch.nn.Linear(INPUTS, network.hidden).double(),
-        torch.nn.Linear(network.hidden, OUTPUTS).double(),
-    )
-    weights, biases, weights_out, biases_out = network.arrays()
-    with torch.no_grad():
-        hidden.weight.copy_(torch.tensor(weights.T))
-        hidden.bias.copy_(torch.tensor(biases))
-        output.weight.copy_(torch.tensor(weights_out.T))
-        output.bias.copy_(torch.tensor(biases_out))
-    return torch.nn.Sequential(hidden, torch.nn.Tanh(), output)
-
-
 @settings(max_examples=20)
 @given(seed=st.integers(0, 2**20), beyond=st.sampled_from([0.1, 1.0, 10.0]))
 def test_torch_numpy_and_compiled_code_agree(seed, beyond):
     network = random_network(seed)
     u = inputs(network, seed, 20, beyond)
     scale = network.output_high - network.output_low
-    x = (2.0 * u - network.input_low - network.input_high) / (network.input_high - network.input_low)
-    with torch.no_grad():
-        y = in_torch(network)(torch.tensor(x)).numpy()
-    expected = 0.5 * (network.output_low + network.output_high + scale * y)
+    expected = TorchCoefficients(network)(u)
     # sums of 75 terms of the size of the outputs
     size = 1e-12 * scale
     assert np.all(np.abs(network(u) - expected) < size)
     assert np.all(np.abs(network.compiled()(u) - expected) < size)
+    assert 0.0 < export_error(network, count=20) < 1e-12
 
 
 @pytest.mark.parametrize("activation", ["tanh", "atan"])
@@ -103,6 +86,7 @@ def test_products_of_features_are_further_inputs():
     expected = 0.5 * (network.output_low + network.output_high) + half * (hidden @ weights_out + biases_out)
     np.testing.assert_allclose(network(u), expected, atol=1e-10)
     np.testing.assert_allclose(network.compiled()(u), expected, atol=1e-10)
+    np.testing.assert_allclose(TorchCoefficients(network)(u), expected, atol=1e-10)
 
 
 def test_networks_side_by_side_are_one_that_gives_what_each_gives(tmp_path):
