@@ -33,7 +33,7 @@ def wing_model(variant: Variant) -> CompiledModel:
 
 
 def starts(first: int, count: int, kind: Kind = "modal"):
-    """Random initial states: drawn for unit-norm modes as the study has them, or for every joint."""
+    """Random initial states: drawn for unit-norm modes, or for every joint."""
     return draw_initial_conditions(basis(), InitialConditions(kind=kind), SEED, first, count)
 
 

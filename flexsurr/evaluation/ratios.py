@@ -6,7 +6,7 @@ import pandas as pd
 from flexsurr.config.study import Integrator
 
 PAPERS_INTEGRATOR = Integrator(method="scipy_radau")
-"""Radau at SciPy's default tolerances: what the study's authors integrated everything with."""
+"""Radau at SciPy's default tolerances: what the paper integrates with."""
 
 SETUP = ["model", "implementation", "integrator"]
 

@@ -129,7 +129,7 @@ def _panel(ax: Axes, cost: pd.DataFrame) -> None:
 
 
 def _is_landmark(model: str, implementation: str, method: str) -> bool:
-    """The baselines and what the study's authors ran: labelled wherever they lie."""
+    """The baselines, and networks in torch: labelled wherever they lie."""
     return implementation in ("described", "torch") or (model == "rom" and method == "scipy_radau")
 
 
