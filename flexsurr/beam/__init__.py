@@ -9,7 +9,8 @@ from flexsurr.beam.kinematics import element_frames, mass_matrix, node_positions
 from flexsurr.beam.loaded import LoadedModel, loaded
 from flexsurr.beam.loads import DeadTipForce, DistributedForce, Load, SineDistributedLoad, SineTipForce
 from flexsurr.beam.models import Implementation, full_order, reduced_order
-from flexsurr.beam.modes import ModalBasis, natural_modes, reduce
+from flexsurr.beam.modes import natural_modes, reduce
+from flexsurr.beam.projection import ModalBasis
 
 __all__ = [
     "BeamModel",

@@ -6,7 +6,8 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.special import ellipkinc
 
-_LARGEST = 100.0  # F L² / EI; beyond, the tip's slope is a right angle to rounding
+LARGEST_LOAD = 100.0
+"""F L²/EI up to which the closed form is evaluated: the tip's slope nears a right angle."""
 
 
 def elastica_tip(bending_stiffness: float, length: float, tip_force: float) -> tuple[float, float]:
@@ -23,8 +24,8 @@ def elastica_tip(bending_stiffness: float, length: float, tip_force: float) -> t
     if not (bending_stiffness > 0.0 and length > 0.0):
         raise ValueError(f"stiffness and length must be positive: {bending_stiffness}, {length}")
     scale = math.sqrt(abs(tip_force) / bending_stiffness)
-    if not (scale * length) ** 2 <= _LARGEST:
-        raise ValueError(f"tip_force: {tip_force} N is beyond F L²/EI = {_LARGEST:g}")
+    if not (scale * length) ** 2 <= LARGEST_LOAD:
+        raise ValueError(f"tip_force: {tip_force} N is beyond F L²/EI = {LARGEST_LOAD:g}")
     if tip_force == 0.0:
         return length, 0.0
 

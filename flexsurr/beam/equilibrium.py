@@ -1,93 +1,150 @@
-"""Static equilibrium of the chain under gravity and constant loads (eq. 8)."""
+"""Static equilibria under gravity and constant loads (eq. 8), followed from the undeformed shape.
+
+Gravity and load grow together by a factor λ from 0 to 1. As long as the tangent stiffness Φᵀ (K − λ ∂Q/∂q) Φ
+is positive definite, the equilibrium is stable and η moves on with λ at the rate that solves
+(tangent) dη/dλ = Φᵀ Q. Where it is not, the structure buckles. Full order is the case Φ = 1.
+"""
+
+from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
 from flexsurr.beam.chain import chain, check_coordinates
 from flexsurr.beam.kinematics import configuration, generalised_forces
-from flexsurr.beam.loads import Load, static_forces
-from flexsurr.config.structure import Structure
+from flexsurr.beam.loads import Forces, Load, static_forces
+from flexsurr.beam.projection import ModalBasis, Projection, projection
+from flexsurr.config.structure import JOINTS, Structure
 from flexsurr.simulation.rhs import Array
 
-_STEP = 1e-30  # complex step: no cancellation, so as small as one likes
-_ITERATIONS = 30
-_SMALLEST_LOAD_STEP = 1.0 / 1024.0
-_TOLERANCE = 1e-11  # residual over the size of springs' and loads' moments
+_COMPLEX_STEP = 1e-30  # no cancellation, so as small as one likes
+_ITERATIONS = 12
+_TOLERANCE = 1e-12  # residual over the size of springs' and loads' moments
+# A step that turns the chain further, or whose corrections are larger than this part of what came before
+# them, may come round to another equilibrium.
+_LARGEST_TURN_RAD = 1.0
+_CONTRACTION = 0.5
+_SMALLEST_STEP = 2.0**-30
 
 
 class EquilibriumNotFound(ArithmeticError):
-    """No static equilibrium was reached; the message names structure, load and residual."""
+    """The structure buckles before the whole load acts; the message is one line and says where."""
 
 
-def find_equilibrium(structure: Structure, load: Load | None = None) -> Array:
-    """The q (n,) with K q = Q(q) under gravity and `load` (a constant one), eq. 8.
+def find_equilibrium(system: Structure | ModalBasis, load: Load | None = None) -> Array:
+    """The η (r,) with Φᵀ (K q − Q(q)) = 0 under gravity and a constant `load`, eq. 8; q for a structure.
 
-    Newton's method from the undeformed shape with the exact tangent; where it does not converge, the load
-    is applied in steps. Raises EquilibriumNotFound, and ValueError for a load that changes with time.
+    Of all equilibria it is the one to which the undeformed shape leads as gravity and load grow together.
+    Raises EquilibriumNotFound where that path becomes unstable, and ValueError for a load that changes with
+    time.
     """
-    q = np.zeros(structure.coordinates)
-    reached, step = 0.0, 1.0
+    balance = _Balance(projection(system), static_forces(_structure(system), load))
+    eta, reached, step = np.zeros(balance.space.coordinates), 0.0, 1.0
     while reached < 1.0:
-        fraction = min(1.0, reached + step)
-        candidate, residual = _newton(structure, load, fraction, q)
-        if residual <= _TOLERANCE:  # False for NaN as well
-            q, reached, step = candidate, fraction, 2.0 * step
-        else:
+        forces, gradient = balance.forces(eta)
+        rate = np.asarray(np.linalg.solve(balance.space.stiffness - reached * gradient, forces), dtype=float)
+        step = min(step, 1.0 - reached, _LARGEST_TURN_RAD / max(balance.turn(rate), 1e-300))
+        while (found := balance.corrected(eta, step * rate, reached + step)) is None:
             step *= 0.5
-            if step < _SMALLEST_LOAD_STEP:
-                raise EquilibriumNotFound(
-                    f"{structure.name}: no static equilibrium beyond {100.0 * reached:.1f} % of "
-                    f"{load if load is not None else 'gravity'}; relative residual {residual:.1e}"
-                )
-    return q
+            if step < _SMALLEST_STEP:
+                raise EquilibriumNotFound(_buckling(system, load, balance.load, reached))
+        eta, reached, step = found, reached + step, 2.0 * step
+    return eta
 
 
-def static_residual(structure: Structure, q: Array, load: Load | None = None, fraction: float = 1.0) -> Array:
-    """K q − Q(q) (..., n) at q (..., n), with gravity and `load` scaled by `fraction`."""
-    beam = chain(structure)
-    return beam.stiffness * q - fraction * _forces(structure, q, load)
+def static_residual(structure: Structure, q: Array, load: Load | None = None) -> Array:
+    """K q − Q(q) (..., n) at q (..., n), with gravity and `load`."""
+    balance = _Balance(projection(structure), static_forces(structure, load))
+    return q @ balance.space.stiffness - balance.generalised(q)
 
 
-def tangent_stiffness(
-    structure: Structure, q: Array, load: Load | None = None, fraction: float = 1.0
-) -> Array:
-    """(n, n) K − ∂Q/∂q at q (n,): springs and geometric stiffness, all columns by complex steps at once."""
+def tangent_stiffness(structure: Structure, q: Array, load: Load | None = None) -> Array:
+    """(n, n) K − ∂Q/∂q at q (n,): springs and geometric stiffness."""
     check_coordinates(structure, q)
-    steps = q + 1j * _STEP * np.eye(structure.coordinates)
-    columns = static_residual(structure, steps, load, fraction).imag / _STEP
-    # Forces that have a potential give a symmetric tangent; averaging removes the rounding.
-    return 0.5 * (columns + columns.T)
+    balance = _Balance(projection(structure), static_forces(structure, load))
+    return balance.space.stiffness - balance.forces(q)[1]
 
 
-def _forces(structure: Structure, q: Array, load: Load | None) -> Array:
-    beam = chain(structure)
-    on_centres, on_tip, _ = static_forces(structure, load)  # no couple is constant
-    weights = np.tile(beam.element_mass * beam.gravity, (beam.elements, 1))
-    return generalised_forces(beam, configuration(beam, q), weights, on_centres, on_tip)
+@dataclass(frozen=True, eq=False)
+class _Balance:
+    """Springs against gravity and a constant load."""
+
+    space: Projection
+    load: Forces
+
+    def generalised(self, eta: Array) -> Array:
+        """Φᵀ Q (..., r) at η (..., r)."""
+        beam = chain(self.space.structure)
+        weights = np.tile(beam.element_mass * beam.gravity, (beam.elements, 1))
+        at = configuration(beam, eta @ self.space.modes.T)
+        return (
+            generalised_forces(beam, at, weights, self.load.on_centres, self.load.on_tip) @ self.space.modes
+        )
+
+    def forces(self, eta: Array) -> tuple[Array, Array]:
+        """Φᵀ Q (r,) and Φᵀ ∂Q/∂q Φ (r, r) at η (r,): all columns by complex steps at once."""
+        found = self.generalised(eta + 1j * _COMPLEX_STEP * np.eye(len(eta)))
+        gradient = found.imag / _COMPLEX_STEP
+        # Forces that have a potential give a symmetric tangent; averaging removes the rounding.
+        return found[0].real, 0.5 * (gradient + gradient.T)
+
+    def turn(self, change: Array) -> float:
+        """By how much a change of η (r,) turns the joints, all together [rad]."""
+        rotations = chain(self.space.structure).rows < JOINTS.index("axial") * self.space.structure.elements
+        return float(np.abs(self.space.modes @ change)[rotations].sum())
+
+    def corrected(self, eta: Array, change: Array, factor: float) -> Array | None:
+        """The stable equilibrium (r,) at `factor` by Newton's method from η + change.
+
+        None where an iterate is unstable, the corrections do not shrink or the residual stays.
+        """
+        springs = self.space.stiffness
+        applied = factor * self._size()
+        found, size = eta + change, _energy(springs, change)
+        for _ in range(_ITERATIONS):
+            forces, gradient = self.forces(found)
+            residual = springs @ found - factor * forces
+            try:
+                correction = cho_solve(cho_factor(springs - factor * gradient), residual)
+            except LinAlgError:
+                return None
+            scale = float(np.linalg.norm(springs @ found)) + applied
+            if float(np.linalg.norm(residual)) <= _TOLERANCE * scale:
+                return np.asarray(found - correction)
+            previous, size = size, _energy(springs, correction)
+            if not size <= _CONTRACTION * previous:
+                return None
+            found = found - correction
+        return None
+
+    def _size(self) -> float:
+        """A bound of Φᵀ Q: gravity and load as a moment over the length [N m], through the modes."""
+        beam = chain(self.space.structure)
+        weight = beam.elements * beam.element_mass * np.linalg.norm(beam.gravity)
+        forces = (
+            weight + np.linalg.norm(self.load.on_centres, axis=1).sum() + np.linalg.norm(self.load.on_tip)
+        )
+        return float(forces * self.space.structure.length_m * np.linalg.norm(self.space.modes, 2))
 
 
-def _size(structure: Structure, load: Load | None) -> float:
-    """Gravity and `load` as a moment over the length [N m]."""
-    beam = chain(structure)
-    on_centres, on_tip, _ = static_forces(structure, load)
-    weight = beam.elements * beam.element_mass * np.linalg.norm(beam.gravity)
-    forces = weight + np.sum(np.linalg.norm(on_centres, axis=1)) + np.linalg.norm(on_tip)
-    return float(forces) * structure.length_m
+def _energy(springs: Array, change: Array) -> float:
+    """The square root of the springs' work over a change of η: a norm whatever the units of η."""
+    return float(np.sqrt(change @ springs @ change))
 
 
-def _newton(structure: Structure, load: Load | None, fraction: float, q: Array) -> tuple[Array, float]:
-    """(q, relative residual) after Newton's iteration, stopped once the residual is at rounding."""
-    stiffness = chain(structure).stiffness
-    applied = fraction * _size(structure, load)
-    previous = np.inf
-    for _ in range(_ITERATIONS):
-        residual = static_residual(structure, q, load, fraction)
-        scale = float(np.linalg.norm(stiffness * q)) + applied
-        relative = float(np.linalg.norm(residual)) / scale if scale > 0.0 else 0.0
-        if relative == 0.0 or not np.isfinite(relative) or (relative <= _TOLERANCE and relative >= previous):
-            break
-        previous = relative
-        try:
-            q = q - np.linalg.solve(tangent_stiffness(structure, q, load, fraction), residual)
-        except np.linalg.LinAlgError:
-            return q, np.inf
-    return q, relative
+def _structure(system: Structure | ModalBasis) -> Structure:
+    return system.structure if isinstance(system, ModalBasis) else system
+
+
+def _buckling(system: Structure | ModalBasis, load: Load | None, forces: Forces, factor: float) -> str:
+    structure = _structure(system)
+    name = structure.name
+    if isinstance(system, ModalBasis):
+        name += f" in {system.modes.shape[1]} mode(s)"
+    causes = []
+    if load is not None:
+        total = np.linalg.norm(forces.on_centres.sum(axis=0) + forces.on_tip)
+        causes.append(f"at {factor * total:.4g} N ({load})")
+    if structure.gravity_m_s2 > 0.0:
+        causes.append(f"under {100.0 * factor:.3g} % of its own weight")
+    return f"{name}: buckles {' '.join(causes)}"

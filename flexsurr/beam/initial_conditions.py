@@ -3,7 +3,7 @@
 import numpy as np
 
 from flexsurr.beam.chain import stiffness_matrix
-from flexsurr.beam.modes import ModalBasis
+from flexsurr.beam.projection import ModalBasis
 from flexsurr.config.study import InitialConditions
 from flexsurr.simulation.rhs import Array
 

@@ -22,9 +22,8 @@ from flexsurr.beam.load_sweeps import (
 )
 from flexsurr.beam.loads import Forces, Load
 from flexsurr.beam.models import Implementation, check_implementation
-from flexsurr.beam.modes import ModalBasis
 from flexsurr.beam.planar import is_planar, plane
-from flexsurr.beam.projection import Projection, projection
+from flexsurr.beam.projection import ModalBasis, Projection, projection
 from flexsurr.config.structure import Structure
 from flexsurr.simulation.rhs import Array, CompiledModel, Model, evaluate
 

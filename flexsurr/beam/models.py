@@ -10,9 +10,8 @@ from typing import Literal, get_args
 from flexsurr.beam.compiled import CompiledBeam
 from flexsurr.beam.described import DescribedBeam
 from flexsurr.beam.dynamics import BeamModel
-from flexsurr.beam.modes import ModalBasis
 from flexsurr.beam.planar import is_planar
-from flexsurr.beam.projection import Projection, projection
+from flexsurr.beam.projection import ModalBasis, Projection, projection
 from flexsurr.beam.vectorised import VectorisedBeam, VectorisedPlanarBeam
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Variant

@@ -1,6 +1,4 @@
-"""Natural frequencies and modes about an equilibrium (eq. 9), and the modal basis of a reduced model."""
-
-from dataclasses import dataclass
+"""Natural frequencies and modes about an equilibrium (eq. 9), and the basis of a reduced model."""
 
 import numpy as np
 from scipy.linalg import LinAlgError, eigh
@@ -9,27 +7,10 @@ from flexsurr.beam.chain import chain, check_coordinates, damping_matrix, stiffn
 from flexsurr.beam.equilibrium import find_equilibrium, tangent_stiffness
 from flexsurr.beam.kinematics import configuration, generalised_forces, mass_matrix
 from flexsurr.beam.loads import Load
+from flexsurr.beam.projection import ModalBasis
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Reduction
 from flexsurr.simulation.rhs import Array
-
-
-@dataclass(frozen=True, eq=False)
-class ModalBasis:
-    """The first r modes of a structure about an equilibrium, and the reduced springs and dampers.
-
-    q = Φ η as in eq. 10, measured from the undeformed shape whatever the equilibrium; a mode of unit norm
-    has η in rad (with axial joints: rad and m alike), a mass-normalised one in kg½ m.
-    """
-
-    structure: Structure
-    equilibrium: Array  # (n,) shape about which the modes were taken
-    modes: Array  # (n, r) Φ
-    stiffness: Array  # (r, r) Φᵀ K Φ
-    damping: Array  # (r, r) Φᵀ C Φ
-    omega_rad_s: Array  # (r,) natural frequencies
-    unit_norms: Array  # (r,) Euclidean norm of each mode; 1 for modes of unit norm
-    normalisation: str  # "unit" or "mass"
 
 
 def natural_modes(structure: Structure, equilibrium: Array, load: Load | None = None) -> tuple[Array, Array]:

@@ -8,9 +8,26 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexsurr.beam.chain import chain, damping_matrix, stiffness_matrix
-from flexsurr.beam.modes import ModalBasis
 from flexsurr.config.structure import Structure
 from flexsurr.simulation.rhs import Array
+
+
+@dataclass(frozen=True, eq=False)
+class ModalBasis:
+    """The first r modes of a structure about an equilibrium, and the reduced springs and dampers.
+
+    q = Φ η as in eq. 10, measured from the undeformed shape whatever the equilibrium; a mode of unit norm
+    has η in rad (with axial joints: rad and m alike), a mass-normalised one in kg½ m.
+    """
+
+    structure: Structure
+    equilibrium: Array  # (n,) shape about which the modes were taken
+    modes: Array  # (n, r) Φ
+    stiffness: Array  # (r, r) Φᵀ K Φ
+    damping: Array  # (r, r) Φᵀ C Φ
+    omega_rad_s: Array  # (r,) natural frequencies
+    unit_norms: Array  # (r,) Euclidean norm of each mode; 1 for modes of unit norm
+    normalisation: str  # "unit" or "mass"
 
 
 @dataclass(frozen=True, eq=False)

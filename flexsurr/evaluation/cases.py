@@ -5,16 +5,15 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from scipy.optimize import root
 
 from flexsurr.beam import (
-    EquilibriumNotFound,
     Implementation,
     Load,
     ModalBasis,
     SineDistributedLoad,
     SineTipForce,
     draw_initial_conditions,
+    find_equilibrium,
     loaded,
     reduced_order,
 )
@@ -96,17 +95,10 @@ def excitation(settings: EvaluationSettings, end_s: float) -> SineTipForce | Sin
 def rest_state(basis: ModalBasis, load: Load | None = None) -> Array:
     """The state (2r,) of the reduced model at rest under gravity and `load` (eq. 8, projected).
 
-    Raises EquilibriumNotFound if none is found.
+    Raises EquilibriumNotFound where the reduced model buckles.
     """
-    model = reduced_order(basis, "hamiltonian", "numpy")
-    field = model if load is None else loaded(model, basis, load, "numpy")
-    r = basis.modes.shape[1]
-    found = root(
-        lambda eta: field.derivative(0.0, np.concatenate([eta, np.zeros(r)]))[r:], np.zeros(r), tol=1e-12
-    )
-    if not found.success:
-        raise EquilibriumNotFound(f"reduced model of {basis.structure.name}, load {load}: {found.message}")
-    return np.concatenate([found.x, np.zeros(r)])
+    eta = find_equilibrium(basis, load)
+    return np.concatenate([eta, np.zeros_like(eta)])
 
 
 def sample_times(duration_s: float, step_s: float) -> Array:

@@ -13,6 +13,7 @@ from flexsurr.beam import (
     reduced_order,
     tip_position,
 )
+from flexsurr.beam.elastica import LARGEST_LOAD
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Study
 from flexsurr.evaluation.cases import rest_state
@@ -25,8 +26,8 @@ def static_tip(study: Study, basis: ModalBasis) -> pd.DataFrame:
     """Tip position under dead tip loads along +z: exact elastica, full order, reduced order (Fig. 8).
 
     Columns `STATIC_COLUMNS`, one row per load, in the clamp's frame [m]. The exact curve is that of an
-    inextensible beam that bends out of plane only and weighs nothing; for any other structure the
-    columns of the exact curve are NaN. Raises EquilibriumNotFound where either model has none.
+    inextensible beam that bends out of plane only and weighs nothing; for any other structure, and beyond
+    F L²/EI = 100, the columns of the exact curve are NaN. Raises EquilibriumNotFound where a model buckles.
     """
     structure = basis.structure
     model = reduced_order(basis, "hamiltonian", "numpy")
@@ -73,6 +74,8 @@ def _is_elastica(structure: Structure) -> bool:
 def _exact_tip(structure: Structure, load_N: float) -> tuple[float, float]:
     stiffness = structure.section_stiffness("out_of_plane")
     if not _is_elastica(structure) or stiffness is None:
+        return (np.nan, np.nan)
+    if abs(load_N) * structure.length_m**2 / stiffness > LARGEST_LOAD:
         return (np.nan, np.nan)
     x, z = elastica_tip(stiffness, structure.length_m, load_N)
     return float(x), float(z)

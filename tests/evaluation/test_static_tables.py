@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from flexsurr.beam import reduce
+from flexsurr.config.study import Statics
 from flexsurr.evaluation.published import FREQUENCIES_RAD_S
 from flexsurr.evaluation.statics import natural_frequencies, static_tip
 
@@ -28,6 +29,16 @@ def test_models_lie_near_the_exact_elastica_and_the_full_one_nearer(study, basis
     assert (error["fom"] < 0.005).all()
     assert (error["rom"] < 0.02).all()
     assert (error["fom"] < error["rom"]).all()
+
+
+def test_loads_beyond_the_paper_keep_all_three_on_one_side(study, basis):
+    """F L²/EI up to 100, and beyond it where no exact curve is drawn any more."""
+    loads = Statics(tip_loads_N=(150.0, 500.0, 525.0, 600.0, 5000.0, 6000.0))
+    table = static_tip(study.model_copy(update={"statics": loads}), basis)
+    for model in ("exact", "fom", "rom"):
+        assert (table[f"z_{model}_m"].dropna() > 0.5).all()
+    assert table["z_exact_m"].isna().tolist() == [False] * 5 + [True]
+    assert np.abs(table["z_fom_m"] - table["z_exact_m"])[:4].max() < 0.4 / 4**2  # second order, four elements
 
 
 def test_a_beam_that_twists_has_no_exact_curve(study, structure):
