@@ -1,4 +1,4 @@
-"""Draw the airliner: Figures 16 to 21, further doublets, its elastic modes, and what its network errs."""
+"""Draw the airliner: Figures 16 to 21, further doublets, its elastic modes, and the errors of its network."""
 
 import json
 from pathlib import Path

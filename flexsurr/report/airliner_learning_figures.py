@@ -1,4 +1,4 @@
-"""What the airliner's network errs, against each of its inputs."""
+"""The error of the airliner's network against each of its inputs."""
 
 import numpy as np
 import pandas as pd
