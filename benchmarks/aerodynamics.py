@@ -25,6 +25,7 @@ from flexsurr.flight.stick_model import stick_model
 from flexsurr.simulation.mapping import CompiledMapping, evaluate_mapping
 from flexsurr.surrogates.coefficient_network import CoefficientNetwork, shapes_of
 from flexsurr.training.coefficient_fit import initial_weights
+from flexsurr.training.coefficient_torch import TorchCoefficients
 from flexsurr.training.structured_normal_equations import CoefficientObjective
 
 AIRCRAFT = Path(__file__).parents[1] / "config" / "aircraft"
@@ -44,20 +45,6 @@ def random_network(low: np.ndarray, high: np.ndarray) -> CoefficientNetwork:
     ones = np.ones(len(COEFFICIENTS))
     weights = initial_weights(len(FEATURES), HIDDEN, len(COEFFICIENTS), seed=0)
     return CoefficientNetwork(weights, HIDDEN, "tanh", low, high, -ones, ones, FEATURES, COEFFICIENTS)
-
-
-def in_torch(network: CoefficientNetwork, u: np.ndarray):
-    layers = torch.nn.Sequential(
-        torch.nn.Linear(len(FEATURES), HIDDEN), torch.nn.Tanh(), torch.nn.Linear(HIDDEN, len(COEFFICIENTS))
-    ).double()
-    x = torch.tensor(u)
-
-    @torch.no_grad()
-    def call():
-        for _ in range(PYTHON_CALLS):
-            layers(x)
-
-    return call
 
 
 def show(name: str, timing: Timing, calls: int, reference_s: float) -> None:
@@ -88,9 +75,10 @@ def main() -> None:
     print(f"{len(airframe.lattice)} panels; one evaluation, of the rebuilt lattice")
     for name, timing in timings.items():
         show(name, timing, calls[name], reference_s)
+    in_torch = TorchCoefficients(network)
     python = {
         "network, NumPy": lambda: [network(u[0]) for _ in range(PYTHON_CALLS)],
-        "network, torch": in_torch(network, u[0]),
+        "network, torch": lambda: [in_torch(u[0]) for _ in range(PYTHON_CALLS)],
     }
     for name, timing in compare(python).items():
         show(name, timing, PYTHON_CALLS, reference_s)
