@@ -12,14 +12,15 @@ import yaml
 from numba import njit
 from timing import Timing, measure
 
-from flexsurr.beam import SineTipForce, full_order, loaded, reduce, reduced_order
+from flexsurr.beam import full_order, loaded, reduce, reduced_order
+from flexsurr.config.load import Sine, TipForce
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Reduction
 from flexsurr.simulation import rhs
 
 CANTILEVER = Path(__file__).parents[1] / "config/structures/cantilever.yaml"
 COMPILED_CALLS = 2000
-LOAD = SineTipForce(10.0, 50.0)
+LOAD = TipForce(force_N=10.0, history=Sine(frequency_rad_s=50.0))
 DESCRIBED, NUMPY, COMPILED = KINDS = ("described", "numpy", "compiled")
 
 

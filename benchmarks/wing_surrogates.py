@@ -13,9 +13,9 @@ from timing import compare
 from wing import ACCURATE, FRESH, basis, datasets, starts, wing_model
 
 from flexsurr.beam import loaded
-from flexsurr.config.study import DistributedLoad, EvaluationSettings, Integrator, LearnedLoadSettings
+from flexsurr.config.load import DistributedForce, Power, Spread
+from flexsurr.config.study import EvaluationSettings, Integrator, LearnedLoadSettings
 from flexsurr.config.sweep import Trial
-from flexsurr.evaluation.cases import excitation
 from flexsurr.evaluation.learned_loads import exact_forces, learn_forces, relative_error
 from flexsurr.simulation import rhs, simulate
 from flexsurr.surrogates import LearnedLoad, compiled
@@ -115,10 +115,14 @@ def best_gradient(eta, forces, degree):
 def learned_loads(dataset, model) -> None:
     """The study's distributed load, learned: errors on held-out samples, and what it adds to a call."""
     settings = EvaluationSettings(
-        distributed=DistributedLoad(force_N_m=10.0, couple_N_m_m=20.0, frequency_rad_s=2.0, shape="elliptic")
+        load=DistributedForce(
+            along_y=Spread(force_N_m=0.5, shape="one_minus_elliptic"),
+            along_z=Spread(force_N_m=2.0, shape="elliptic"),
+            history=Power(exponent=2),
+        )
     )
     eta, held_out = dataset.x_train[:, :3], dataset.x_validation[::7, :3]
-    load = excitation(settings, end_s=1.0)
+    load = settings.load
     models = {"none": model, "exact": loaded(model, basis(), load, "compiled")}
     errors = {}
     for degree, hidden in ((4, 8), (6, 16), (8, 32)):
@@ -130,7 +134,7 @@ def learned_loads(dataset, model) -> None:
             errors[fitted.form] = relative_error(fitted(held_out), exact)
             models[fitted.form] = LearnedLoad(model, fitted, load.history)
     found = best_gradient(eta, exact_forces(basis(), learned.load, eta), 8)
-    print(f"\nthe best potential of degree 8 errs by {found:.1e}: the couples have none")
+    print(f"\nthe best potential of degree 8 errs by {found:.1e}: dead forces have one")
     calls = nanoseconds(models, dataset.x_train[5])
     print("\nlearned load along the span   force, relative   ns more a call")
     for name in models:

@@ -6,7 +6,6 @@ python examples/tip_load_release.py
 import numpy as np
 
 from flexsurr.beam import (
-    DeadTipForce,
     find_equilibrium,
     full_order,
     reduce,
@@ -14,6 +13,7 @@ from flexsurr.beam import (
     stiffness_matrix,
     tip_position,
 )
+from flexsurr.config.load import TipForce
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Integrator, Reduction
 from flexsurr.simulation import simulate
@@ -31,7 +31,7 @@ stiff = Integrator(method="radau_iia_5", rtol=1e-6, atol=1e-9)  # for the fast j
 smooth = Integrator(method="dop853", rtol=1e-7, atol=1e-9)
 t = np.linspace(0.0, 1.0, 501)
 
-pulled = find_equilibrium(beam, DeadTipForce((0.0, 0.0, 2.0)))
+pulled = find_equilibrium(beam, TipForce(force_N=2.0))
 x, _, z = tip_position(beam, pulled)
 print(f"pulled up by 2 N the tip is at x = {x:.4f} m, z = {z:.4f} m")
 

@@ -7,7 +7,7 @@ from flexsurr.beam.equilibrium import EquilibriumNotFound, find_equilibrium
 from flexsurr.beam.initial_conditions import draw_initial_conditions
 from flexsurr.beam.kinematics import element_frames, mass_matrix, node_positions, tip_position, tip_twist
 from flexsurr.beam.loaded import LoadedModel, loaded
-from flexsurr.beam.loads import DeadTipForce, DistributedForce, Load, SineDistributedLoad, SineTipForce
+from flexsurr.beam.loads import Load, load_forces
 from flexsurr.beam.models import Implementation, full_order, reduced_order
 from flexsurr.beam.modes import natural_modes, reduce
 from flexsurr.beam.projection import ModalBasis
@@ -15,15 +15,11 @@ from flexsurr.beam.projection import ModalBasis
 __all__ = [
     "BeamModel",
     "Chain",
-    "DeadTipForce",
-    "DistributedForce",
     "EquilibriumNotFound",
     "Implementation",
     "Load",
     "LoadedModel",
     "ModalBasis",
-    "SineDistributedLoad",
-    "SineTipForce",
     "chain",
     "damping_matrix",
     "draw_initial_conditions",
@@ -31,6 +27,7 @@ __all__ = [
     "element_frames",
     "find_equilibrium",
     "full_order",
+    "load_forces",
     "loaded",
     "mass_matrix",
     "natural_modes",

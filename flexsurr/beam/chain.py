@@ -49,7 +49,6 @@ def chain(structure: Structure) -> Chain:
     length = structure.length_m / elements
     joints = structure.ordered_joints
     stiffness = {joint: joint_stiffness(structure, joint) for joint in joints}
-    clamp_angles = np.deg2rad([structure.clamp_psi_deg, structure.clamp_theta_deg, structure.clamp_phi_deg])
     return Chain(
         elements=elements,
         element_length=length,
@@ -58,21 +57,12 @@ def chain(structure: Structure) -> Chain:
         ),
         element_mass=structure.mass_per_length_kg_m * length,
         offset=structure.centre_of_gravity_offset_m,
-        clamp=_fixed(rotation(*clamp_angles)),
+        clamp=_fixed(np.array(structure.clamp_axes).T.copy()),
         gravity=_fixed(np.array([0.0, 0.0, -structure.gravity_m_s2])),
         stiffness=_fixed(np.concatenate([stiffness[joint] for joint in joints])),
         damping=_fixed(np.concatenate([stiffness[joint] * structure.damping_s(joint) for joint in joints])),
         torsion_inertia=structure.torsional_inertia_per_length_kg_m * length,
     )
-
-
-def rotation(psi: float, theta: float, phi: float) -> Array:
-    """(3, 3) 3-2-1 rotation: ψ about z, θ about −y (so that positive θ lifts x to z), φ about x [rad]."""
-    c, s = np.cos([psi, theta, phi]), np.sin([psi, theta, phi])
-    about_z = np.array([[c[0], -s[0], 0.0], [s[0], c[0], 0.0], [0.0, 0.0, 1.0]])
-    about_minus_y = np.array([[c[1], 0.0, -s[1]], [0.0, 1.0, 0.0], [s[1], 0.0, c[1]]])
-    about_x = np.array([[1.0, 0.0, 0.0], [0.0, c[2], -s[2]], [0.0, s[2], c[2]]])
-    return about_z @ about_minus_y @ about_x
 
 
 def joint_stiffness(structure: Structure, joint: Joint) -> Array:

@@ -65,24 +65,6 @@ def jacobians(structure: Structure, q: Array) -> tuple[Array, Array, Array]:
     return of_masses, of_centres, of_tip
 
 
-def twist_rates(structure: Structure, q: Array) -> Array:
-    """(N, n) how fast each element turns about its own x axis [rad/s] for a unit rate of each coordinate."""
-    beam = chain(structure)
-    joints = structure.ordered_joints
-    blocks = dict(zip(joints, np.split(q, len(joints)), strict=True))
-    frame = beam.clamp
-    axes = np.zeros((3, len(q)))  # of the joints met so far
-    rates = np.empty((structure.elements, len(q)))
-    for i in range(structure.elements):
-        for block, joint in enumerate(joints):
-            if joint != "axial":
-                column, sense = AXIS[joint]
-                axes[:, block * structure.elements + i] = sense * frame[:, column]
-                frame = frame @ joint_rotation(joint, blocks[joint][i])
-        rates[i] = frame[:, 0] @ axes
-    return rates
-
-
 def mass_matrix(structure: Structure, jacobian: Array, inertia: Array) -> Array:
     """M (n, n) = Σ m JᵀJ + I from the masses' Jacobian (N, 3, n) and the rotary inertia (n, n), eq. 3."""
     total = inertia.copy()

@@ -31,14 +31,16 @@ class EquilibriumNotFound(ArithmeticError):
     """The structure buckles before the whole load acts; the message is one line and says where."""
 
 
-def find_equilibrium(system: Structure | ModalBasis, load: Load | None = None) -> Array:
-    """The η (r,) with Φᵀ (K q − Q(q)) = 0 under gravity and a constant `load`, eq. 8; q for a structure.
+def find_equilibrium(
+    system: Structure | ModalBasis, load: Load | None = None, at_s: float | None = None
+) -> Array:
+    """The η (r,) with Φᵀ (K q − Q(q)) = 0 under gravity and `load`, eq. 8; q for a structure.
 
     Of all equilibria it is the one to which the undeformed shape leads as gravity and load grow together.
-    Raises EquilibriumNotFound where that path becomes unstable, and ValueError for a load that changes with
-    time.
+    A load that changes with time is held as it is at `at_s` [s]. Raises EquilibriumNotFound where the path
+    becomes unstable, and ValueError for a load that changes with time where no instant is given.
     """
-    balance = _Balance(projection(system), static_forces(_structure(system), load))
+    balance = _Balance(projection(system), static_forces(_structure(system), load, at_s))
     eta, reached, step = np.zeros(balance.space.coordinates), 0.0, 1.0
     while reached < 1.0:
         forces, gradient = balance.forces(eta)
@@ -144,7 +146,7 @@ def _buckling(system: Structure | ModalBasis, load: Load | None, forces: Forces,
     causes = []
     if load is not None:
         total = np.linalg.norm(forces.on_centres.sum(axis=0) + forces.on_tip)
-        causes.append(f"at {factor * total:.4g} N ({load})")
+        causes.append(f"at {factor * total:.4g} N ({load.kind.replace('_', ' ')})")
     if structure.gravity_m_s2 > 0.0:
         causes.append(f"under {100.0 * factor:.3g} % of its own weight")
     return f"{name}: buckles {' '.join(causes)}"

@@ -110,22 +110,15 @@ def velocities(beam: Chain, at: Configuration, rates: Array) -> Velocities:
 
 
 def generalised_forces(
-    beam: Chain,
-    at: Configuration,
-    on_masses: Array,
-    on_centres: Array,
-    on_tip: Array,
-    couples: Array | None = None,
+    beam: Chain, at: Configuration, on_masses: Array, on_centres: Array, on_tip: Array
 ) -> Array:
     """(..., n) Q = Jᵀ F of forces on the masses (N, 3), on the elements' centres (N, 3), on the tip (3,) [N].
 
-    `couples` (N,) [N m] twist the elements about their own x axes. A rotation feels the moment about its
-    joint of all that acts from its element outwards, a stretch the sum of the forces along the element.
+    A rotation feels the moment about its joint of all that acts from its element outwards, a stretch the sum
+    of the forces along the element.
     """
     forces = on_masses + on_centres
     moments = cross(at.masses, on_masses) + cross(at.centres, on_centres)
-    if couples is not None:
-        moments = moments + couples[:, None] * at.axes[..., 3, :, :]
     outboard_force = np.cumsum(forces[..., ::-1, :], axis=-2)[..., ::-1, :] + on_tip
     outboard_moment = np.cumsum(moments[..., ::-1, :], axis=-2)[..., ::-1, :]
     outboard_moment = outboard_moment + cross(at.nodes[..., -1:, :], on_tip)

@@ -2,12 +2,10 @@
 
 from typing import Any, NamedTuple
 
-from numba import njit
-
 from flexsurr.beam.planar_sweep import padded_length, planar_angles
-from flexsurr.beam.spatial_sweep import AXES, add_couples, add_dead_forces, sweep_axes
-from flexsurr.beam.trigonometry import sine_cosine
-from flexsurr.simulation.rhs import FLOATING_POINT, Array, implements_rhs, rhs
+from flexsurr.beam.spatial_sweep import AXES, add_dead_forces, sweep_axes
+from flexsurr.simulation.history import HistoryKernel, history_factor
+from flexsurr.simulation.rhs import Array, implements_rhs, rhs
 
 
 class PlanarLoaded(NamedTuple):
@@ -16,14 +14,11 @@ class PlanarLoaded(NamedTuple):
     model: Any  # kernel of the model without the load
     slopes: Array  # (r, P) absolute angles for each η, padded with zeros
     arms: Array  # (2, P) moment arms of the load's shape [N m], likewise
-    start: float  # [s]
-    end: float  # [s]
-    frequency: float  # [rad/s]
-    phase: float  # [rad]
+    history: HistoryKernel
 
 
 class SpatialLoaded(NamedTuple):
-    """A model of any chain under a load of fixed shape: dead forces, and couples on the elements."""
+    """A model of any chain under dead forces of fixed shape."""
 
     model: Any  # kernel of the model without the load
     modes: Array  # (r, 4 N) Φᵀ, blocks ψ, θ, φ, s
@@ -32,11 +27,7 @@ class SpatialLoaded(NamedTuple):
     weightless: Array  # (3,) zeros: the load is on the elastic axis
     on_centres: Array  # (N, 3) [N]
     on_tip: Array  # (3,) [N]
-    couples: Array  # (N,) about the elements' own x axes [N m]
-    start: float  # [s]
-    end: float  # [s]
-    frequency: float  # [rad/s]
-    phase: float  # [rad]
+    history: HistoryKernel
 
 
 def planar_load_work_size(elements: int) -> int:
@@ -49,19 +40,11 @@ def spatial_load_work_size(elements: int) -> int:
     return (AXES + 10) * elements
 
 
-@njit(fastmath=FLOATING_POINT, error_model="numpy", cache=True)
-def load_factor(kernel, t):
-    """`History.factor` of the load in `kernel` at t [s]."""
-    if not kernel.start <= t < kernel.end:
-        return 0.0
-    return sine_cosine(kernel.frequency * t + kernel.phase)[0]
-
-
 @implements_rhs(PlanarLoaded, inline=False)
 def planar_loaded_rhs(kernel, t, x, dx, work):
     """The model's right-hand side and the load's moments about the elements' roots."""
     rhs(kernel.model, t, x, dx, work)
-    factor = load_factor(kernel, t)
+    factor = history_factor(kernel.history, t)
     if factor == 0.0:
         return
     r, n = kernel.slopes.shape
@@ -80,7 +63,7 @@ def planar_loaded_rhs(kernel, t, x, dx, work):
 def spatial_loaded_rhs(kernel, t, x, dx, work):
     """The model's right-hand side and the load's moments about the joints' axes."""
     rhs(kernel.model, t, x, dx, work)
-    factor = load_factor(kernel, t)
+    factor = history_factor(kernel.history, t)
     if factor == 0.0:
         return
     r = kernel.modes.shape[0]
@@ -90,7 +73,6 @@ def spatial_loaded_rhs(kernel, t, x, dx, work):
     for i in range(4 * n):
         forces[i] = 0.0
     add_dead_forces(axes, 0.0, kernel.weightless, kernel.on_centres, kernel.on_tip, forces)
-    add_couples(axes, kernel.couples, forces)
     for k in range(r):
         row = kernel.modes[k]
         force = 0.0

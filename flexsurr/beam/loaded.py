@@ -12,7 +12,7 @@ import numpy as np
 
 from flexsurr.beam.chain import chain
 from flexsurr.beam.compiled import all_joints, own, padded
-from flexsurr.beam.described import jacobians, twist_rates
+from flexsurr.beam.described import jacobians
 from flexsurr.beam.kinematics import configuration, generalised_forces, tip_position, tip_twist
 from flexsurr.beam.load_sweeps import (
     PlanarLoaded,
@@ -20,11 +20,12 @@ from flexsurr.beam.load_sweeps import (
     planar_load_work_size,
     spatial_load_work_size,
 )
-from flexsurr.beam.loads import Forces, Load
+from flexsurr.beam.loads import Forces, Load, load_forces
 from flexsurr.beam.models import Implementation, check_implementation
 from flexsurr.beam.planar import is_planar, plane
 from flexsurr.beam.projection import ModalBasis, Projection, projection
 from flexsurr.config.structure import Structure
+from flexsurr.simulation.history import breakpoints, factor, history_kernel
 from flexsurr.simulation.rhs import Array, CompiledModel, Model, evaluate
 
 
@@ -49,7 +50,7 @@ class LoadedModel(ABC):
     @property
     def breakpoints(self) -> tuple[float, ...]:
         """Times [s] at which the load, or the model itself, may jump."""
-        return tuple(sorted({*self.model.breakpoints, *self.load.history.breakpoints}))
+        return tuple(sorted({*self.model.breakpoints, *breakpoints(self.load.history)}))
 
     @property
     def energy(self) -> Any:
@@ -67,7 +68,7 @@ class LoadedModel(ABC):
     @cached_property
     def forces(self) -> Forces:
         """What the load exerts at a factor of 1."""
-        return self.load.forces(self.projection.structure)
+        return load_forces(self.projection.structure, self.load)
 
     @abstractmethod
     def derivative(self, t: float, x: Array) -> Array:
@@ -79,11 +80,11 @@ class InterpretedLoad(LoadedModel):
 
     def derivative(self, t: float, x: Array) -> Array:
         """ẋ (2r,) at time t [s] and states x (2r,)."""
-        factor = self.load.history.factor(t)
+        now = factor(self.load.history, t)
         dx = np.array(self.model.derivative(t, x))
-        if factor != 0.0:
+        if now != 0.0:
             r = self.projection.coordinates
-            dx[r:] += factor * self.generalised_force(x[:r])
+            dx[r:] += now * self.generalised_force(x[:r])
         return dx
 
     @abstractmethod
@@ -96,12 +97,10 @@ class DescribedLoad(InterpretedLoad):
 
     def generalised_force(self, eta: Array) -> Array:
         """Φᵀ Jᵀ F (r,) at η (r,)."""
-        on_centres, on_tip, couples = self.forces
+        on_centres, on_tip = self.forces
         modes, structure = self.projection.modes, self.projection.structure
         _, of_centres, of_tip = jacobians(structure, modes @ eta)
         forces = of_tip.T @ on_tip
-        if np.any(couples):
-            forces = forces + twist_rates(structure, modes @ eta).T @ couples
         for columns, force in zip(of_centres, on_centres, strict=True):
             forces = forces + columns.T @ force
         return modes.T @ forces
@@ -142,18 +141,16 @@ class CompiledLoad(LoadedModel):
     @cached_property
     def kernel(self) -> NamedTuple:
         """The model's kernel within the load's."""
-        history = self.load.history
-        when = (history.start_s, history.end_s, history.frequency_rad_s, history.phase_rad)
+        history = history_kernel(self.load.history)
         if is_planar(self.projection.structure):
             frame = plane(self.projection)
             arms = frame.moment_arms(self.forces.on_centres, self.forces.on_tip)
-            return PlanarLoaded(self.model.kernel, padded(frame.slopes.T), padded(arms), *when)
+            return PlanarLoaded(self.model.kernel, padded(frame.slopes.T), padded(arms), history)
         beam = chain(self.projection.structure)
         modes, load = all_joints(self.projection), self.forces
-        on_centres, on_tip, couples = own(load.on_centres), own(load.on_tip), own(load.couples)
         return SpatialLoaded(
             self.model.kernel, modes, own(beam.clamp), beam.element_length, np.zeros(3),
-            on_centres, on_tip, couples, *when,
+            own(load.on_centres), own(load.on_tip), history,
         )  # fmt: skip
 
     @property

@@ -144,19 +144,6 @@ def add_dead_forces(axes, offset, weight, on_centres, on_tip, forces):
 
 
 @njit(fastmath=FLOATING_POINT, error_model="numpy", cache=True)
-def add_couples(axes, couples, forces):
-    """Add couples (N,) about the elements' own x axes to the forces on the joints (4 N,)."""
-    n = couples.shape[0]
-    m0 = m1 = m2 = 0.0
-    for i in range(n - 1, -1, -1):
-        a = axes[AXES * i : AXES * (i + 1)]
-        m0, m1, m2 = m0 + couples[i] * a[6], m1 + couples[i] * a[7], m2 + couples[i] * a[8]
-        forces[i] += a[0] * m0 + a[1] * m1 + a[2] * m2
-        forces[n + i] -= a[3] * m0 + a[4] * m1 + a[5] * m2
-        forces[2 * n + i] += a[6] * m0 + a[7] * m1 + a[8] * m2
-
-
-@njit(fastmath=FLOATING_POINT, error_model="numpy", cache=True)
 def add_gyroscopic_forces(axes, offset, mass, rates, roots, masses, forces):
     """Add ½ ∂/∂q (q̇ᵀ M q̇) to `forces` (4 N,), from what `sweep_velocities` found for the rates (4 N,)."""
     n = masses.shape[0] // 3

@@ -3,7 +3,7 @@
 import difflib
 import types
 from collections.abc import Callable, Iterable, Sequence
-from typing import Any, Union, get_args, get_origin
+from typing import Annotated, Any, Union, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
@@ -52,13 +52,14 @@ def key_path(location: Location) -> str:
 def _line(
     details: ErrorDetails, record: type[BaseModel], origin: Callable[[Location], tuple[str, str]]
 ) -> str:
-    location = tuple(step for step in details["loc"] if step != "[key]")
+    tagged = tuple(step for step in details["loc"] if step != "[key]")
+    location, _ = _resolve(record, tagged)
     file, key = origin(location)
     value = details["input"]
     where = f"{file}: {key}" if key else file
     match details["type"]:
         case "extra_forbidden":
-            fields = _fields_at(record, location[:-1])
+            fields = tuple(_resolve(record, tagged[:-1])[1].model_fields)
             return (
                 f"{where}: unknown key (value {_short(value)}){nearest(str(location[-1]), fields)}; "
                 f"allowed: {', '.join(fields)}"
@@ -72,6 +73,11 @@ def _line(
             expected = str(details["ctx"]["expected"])
             known = [word.strip("' ") for part in expected.split(",") for word in part.split(" or ")]
             return f"{where}: {_short(value)} is not allowed{nearest(str(value), known)}; allowed: {expected}"
+        case "union_tag_invalid":
+            tags = details["ctx"]
+            return f"{where}.kind: {tags['tag']!r} is not allowed; allowed: {tags['expected_tags']}"
+        case "union_tag_not_found":
+            return f"{where}.kind: missing; a value is needed"
         case "too_short":
             return f"{where}: {_short(value)} is empty; allowed: at least one value"
         case "tuple_type" | "list_type":
@@ -92,19 +98,31 @@ def _shown(value: Any) -> str:
     return "" if isinstance(value, dict) and len(repr(value)) > LONGEST_VALUE else f" (value {_short(value)})"
 
 
-def _fields_at(record: type[BaseModel], location: Location) -> tuple[str, ...]:
-    """Names of the fields of the record that stands at `location` within `record`."""
+def _resolve(record: type[BaseModel], location: Location) -> tuple[Location, type[BaseModel]]:
+    """`location` without the tags of unions, which are no keys, and the record that stands there."""
+    plain: list[str | int] = []
+    members: dict[str, type[BaseModel]] = {}
     for step in location:
+        if step in members:
+            record, members = members[str(step)], {}
+            continue
+        plain.append(step)
         if isinstance(step, str) and step in record.model_fields:
-            nested = _record_in(record.model_fields[step].annotation)
-            if nested is not None:
-                record = nested
-    return tuple(record.model_fields)
+            nested = _records_in(record.model_fields[step].annotation)
+            members = {_kind(member): member for member in nested} if len(nested) > 1 else {}
+            record = nested[0] if nested else record
+    return tuple(plain), record
 
 
-def _record_in(annotation: Any) -> type[BaseModel] | None:
+def _kind(record: type[BaseModel]) -> str:
+    return str(get_args(record.model_fields["kind"].annotation)[0])
+
+
+def _records_in(annotation: Any) -> list[type[BaseModel]]:
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return annotation
+        return [annotation]
+    if get_origin(annotation) is Annotated:
+        return _records_in(get_args(annotation)[0])
     if get_origin(annotation) is None and not isinstance(annotation, types.UnionType | type(Union)):
-        return None
-    return next((found for part in get_args(annotation) if (found := _record_in(part))), None)
+        return []
+    return [found for part in get_args(annotation) for found in _records_in(part)]

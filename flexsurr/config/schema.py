@@ -1,8 +1,17 @@
 """What every configuration file is built from: strict, frozen records that reject unknown keys."""
 
+from collections.abc import Mapping
 from typing import Any
 
 from pydantic import BaseModel, ConfigDict, ValidationInfo, field_validator
+
+
+def by_kind(value: Any) -> Any:
+    """The `kind` of a value, by which pydantic chooses among the records that it may be.
+
+    A discriminator that is a field's name would not go with the check of every field below.
+    """
+    return value.get("kind") if isinstance(value, Mapping) else getattr(value, "kind", None)
 
 
 class Record(BaseModel):

@@ -9,10 +9,11 @@ from pydantic import Field
 
 from flexsurr.config.airliner import AirlinerFiles
 from flexsurr.config.errors import ConfigurationError
+from flexsurr.config.load import check_load
 from flexsurr.config.merging import Source, build, merge
 from flexsurr.config.reading import read_yaml
 from flexsurr.config.schema import Record
-from flexsurr.config.structure import Structure, check_within_span
+from flexsurr.config.structure import Structure
 from flexsurr.config.study import Count, Study
 from flexsurr.config.sweep import Sweep
 
@@ -144,14 +145,11 @@ def _load_study(root: Path, name: str, sources: Sequence[Source]) -> ResolvedStu
                 f"the coordinates of {study.structure}"
             ]
         )
-    if (load := study.evaluation.distributed) is not None:
-        try:
-            check_within_span(
-                load.from_m, structure.length_m if load.to_m is None else load.to_m, structure.length_m
-            )
-        except ValueError as error:
-            holder = _holder(study_sources, ("evaluation", "distributed"))
-            raise ConfigurationError([f"{holder}: evaluation.distributed: {error}"]) from None
+    try:
+        check_load(study.evaluation.load, structure)
+    except ValueError as error:
+        holder = _holder(study_sources, ("evaluation", "load"))
+        raise ConfigurationError([f"{holder}: evaluation.load: {error}"]) from None
     return ResolvedStudy(name, study, structure, sweeps, tuple(others))
 
 

@@ -1,5 +1,6 @@
 """The structure: a clamped beam of rigid elements and joint springs (config/structures/*.yaml)."""
 
+import math
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
@@ -9,6 +10,7 @@ from flexsurr.config.schema import Record
 Joint = Literal["in_plane", "out_of_plane", "torsion", "axial"]
 JOINTS: tuple[Joint, ...] = ("in_plane", "out_of_plane", "torsion", "axial")
 
+Axis = tuple[float, float, float]
 Positive = Annotated[float, Field(gt=0.0)]
 NotNegative = Annotated[float, Field(ge=0.0)]
 
@@ -71,6 +73,32 @@ class Structure(Record):
         """Whether any of its joints is damped."""
         return any(self.damping_s(joint) > 0.0 for joint in self.joints)
 
+    @property
+    def clamp_axes(self) -> tuple[Axis, Axis, Axis]:
+        """x, y and z of the turned clamp: ψ about z, θ about −y (so that positive θ lifts x), φ about x."""
+        angles = (self.clamp_psi_deg, self.clamp_theta_deg, self.clamp_phi_deg)
+        cz, cy, cx = (math.cos(math.radians(angle)) for angle in angles)
+        sz, sy, sx = (math.sin(math.radians(angle)) for angle in angles)
+        return (
+            (cz * cy, sz * cy, sy),
+            (-sz * cx - cz * sy * sx, cz * cx - sz * sy * sx, cy * sx),
+            (sz * sx - cz * sy * cx, -cz * sx - sz * sy * cx, cy * cx),
+        )
+
+    @property
+    def felt_axes(self) -> tuple[Axis, ...]:
+        """Axes of the clamp along which a force on the elastic axis does work as the joints move."""
+        x, y, z = self.clamp_axes
+        match tuple(joint for joint in self.ordered_joints if joint != "axial"):
+            case () | ("torsion",):
+                return (x,) if "axial" in self.joints else ()
+            case ("in_plane",):
+                return x, y
+            case ("out_of_plane",):
+                return x, z
+            case _:
+                return x, y, z
+
     def section_stiffness(self, joint: Joint) -> float | None:
         """EI, GJ [N m²] or EA [N] that the springs of this joint kind come from."""
         value: float | None = getattr(self, STIFFNESS_KEY[joint])
@@ -80,15 +108,6 @@ class Structure(Record):
         """Rayleigh coefficient β [s] of this joint kind: C = K β."""
         value: float = getattr(self, f"damping_{joint}_s")
         return value
-
-
-def check_within_span(from_m: float, to_m: float, span_m: float) -> None:
-    """ValueError unless 0 ≤ `from_m` < `to_m` ≤ `span_m`."""
-    if not 0.0 <= from_m < to_m <= span_m:
-        raise ValueError(
-            f"from_m, to_m: a load from {from_m:g} to {to_m:g} m does not lie within the span "
-            f"(0 to {span_m:g} m)"
-        )
 
 
 STIFFNESS_KEY: dict[Joint, str] = {

@@ -5,8 +5,9 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from flexsurr.config.activation import Activation
+from flexsurr.config.load import Load, Sine, TipForce
 from flexsurr.config.schema import Record
-from flexsurr.config.structure import NotNegative, Positive
+from flexsurr.config.structure import Positive
 
 Variant = Literal["hamiltonian", "as_printed"]
 Count = Annotated[int, Field(ge=1)]
@@ -99,31 +100,6 @@ class DatasetSettings(Record):
         return -(-self.trajectories // self.trajectories_per_shard)
 
 
-class TipForce(Record):
-    """F(t) = amplitude sin(frequency t) along `direction` (clamp's frame), from 0 to a random end."""
-
-    amplitude_N: float = 10.0
-    frequency_rad_s: NotNegative = 50.0
-    direction: tuple[float, float, float] = (0.0, 0.0, 1.0)
-    longest_s: Positive = 5.0
-
-
-class DistributedLoad(Record):
-    """Force along z and twisting couple per unit span, times sin(frequency t), from 0 to a random end.
-
-    Eqs. 13 and 14. `shape` is how both go along the span: uniform, linear (0 at the clamp), or elliptic
-    (0 at the tip); they act between `from_m` and `to_m` only, the tip where none is given.
-    """
-
-    force_N_m: float
-    couple_N_m_m: float = 0.0
-    frequency_rad_s: NotNegative
-    shape: Literal["uniform", "linear", "elliptic"] = "uniform"
-    from_m: NotNegative = 0.0
-    to_m: Positive | None = None
-    longest_s: Positive = 5.0
-
-
 class LearnedLoadSettings(Record):
     """The forced response's load, learned from the configurations of one `dataset` of the study.
 
@@ -154,8 +130,8 @@ class DescribedSimulations(Record):
 class EvaluationSettings(Record):
     """Responses by which models are timed and judged.
 
-    `distributed`, where there is one, takes the place of `force` in all forced responses, and `learned_load`
-    says how its generalised forces are learned. Integrators:
+    In forced responses `load` acts from rest until a random time within `longest_load_s`, or until the end of
+    its own history; `learned_load` says how its generalised forces are learned. Integrators:
     `integrators` are timed, beside SciPy's Radau; `reference_integrator` gives what errors are measured from,
     `judging_integrator` the responses by which runs are chosen, `drawing_integrator` those of the figures,
     `energy_integrator` those whose energy is drawn, and `validation_integrator` full and reduced order.
@@ -169,8 +145,8 @@ class EvaluationSettings(Record):
     repeats: Count = 5
     long_responses: Count = 5
     validation_duration_s: Positive = 1.0
-    force: TipForce = TipForce()
-    distributed: DistributedLoad | None = None
+    load: Load = TipForce(force_N=10.0, history=Sine(frequency_rad_s=50.0))
+    longest_load_s: Positive = 5.0
     learned_load: LearnedLoadSettings = LearnedLoadSettings()
     reference_integrator: Integrator = Integrator(method="dop853", rtol=1e-12, atol=1e-14)
     judging_integrator: Integrator = Integrator(method="dop853_fixed", step_s=0.01)
@@ -186,6 +162,16 @@ class EvaluationSettings(Record):
         Integrator(method="gauss_legendre_6", step_s=5e-3),
         Integrator(method="radau_iia_5", rtol=1e-6, atol=1e-9),
     )
+
+    @model_validator(mode="after")
+    def _the_load_begins_in_time(self) -> Self:
+        start_s = self.load.history.start_s
+        if not start_s < self.longest_load_s:
+            raise ValueError(
+                f"longest_load_s: {self.longest_load_s} is not allowed; allowed: more than {start_s}, where "
+                "the load starts"
+            )
+        return self
 
 
 class Statics(Record):

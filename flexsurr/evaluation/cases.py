@@ -10,8 +10,6 @@ from flexsurr.beam import (
     Implementation,
     Load,
     ModalBasis,
-    SineDistributedLoad,
-    SineTipForce,
     draw_initial_conditions,
     find_equilibrium,
     loaded,
@@ -19,6 +17,7 @@ from flexsurr.beam import (
 )
 from flexsurr.config.study import EvaluationSettings, Integrator, Study, Variant
 from flexsurr.simulation import simulate
+from flexsurr.simulation.history import end_s
 from flexsurr.simulation.rhs import Array, Model
 
 Response = Literal["free", "forced"]
@@ -39,12 +38,12 @@ class Case:
 
     number: int
     x0: Array
-    load: SineTipForce | SineDistributedLoad | None = None
+    load: Load | None = None
 
     @property
     def free_from_s(self) -> float:
         """Time [s] from which no load acts."""
-        return 0.0 if self.load is None else float(self.load.end_s)
+        return 0.0 if self.load is None else end_s(self.load.history)
 
 
 @dataclass(frozen=True)
@@ -69,13 +68,15 @@ def free_cases(basis: ModalBasis, study: Study, first: int, count: int) -> list[
 
 
 def forced_cases(basis: ModalBasis, study: Study, first: int, count: int) -> list[Case]:
-    """Responses from rest to the study's load, which acts from 0 to a random end in (0, longest_s]."""
+    """Responses from rest to the study's load, which ends at a random time in (start, longest_load_s]."""
     settings = study.evaluation
-    longest_s = (settings.distributed or settings.force).longest_s
+    longest_s, start_s = settings.longest_load_s, settings.load.history.start_s
+    at_rest = rest_state(basis)
     cases = []
     for number in range(first, first + count):
-        end_s = longest_s * (1.0 - np.random.default_rng([study.seed, number]).random())
-        cases.append(Case(number=number, x0=rest_state(basis), load=excitation(settings, end_s)))
+        drawn = np.random.default_rng([study.seed, number]).random()
+        load = excitation(settings, longest_s - drawn * (longest_s - start_s))
+        cases.append(Case(number=number, x0=at_rest, load=load))
     return cases
 
 
@@ -85,19 +86,14 @@ def evaluation_cases(basis: ModalBasis, study: Study, response: Response) -> lis
     return draw(basis, study, FIRST_EVALUATION_CASE, study.evaluation.simulations)
 
 
-def excitation(settings: EvaluationSettings, end_s: float) -> SineTipForce | SineDistributedLoad:
-    """The study's distributed load, or else its tip force, acting from 0 to `end_s` [s]."""
-    if (spread := settings.distributed) is not None:
-        return SineDistributedLoad(**spread.model_dump(exclude={"longest_s"}), start_s=0.0, end_s=end_s)
-    return SineTipForce(**settings.force.model_dump(exclude={"longest_s"}), start_s=0.0, end_s=end_s)
+def excitation(settings: EvaluationSettings, until_s: float) -> Load:
+    """The study's load, which ends at `until_s` [s] at the latest."""
+    return settings.load.until(until_s)
 
 
-def rest_state(basis: ModalBasis, load: Load | None = None) -> Array:
-    """The state (2r,) of the reduced model at rest under gravity and `load` (eq. 8, projected).
-
-    Raises EquilibriumNotFound where the reduced model buckles.
-    """
-    eta = find_equilibrium(basis, load)
+def rest_state(basis: ModalBasis, load: Load | None = None, at_s: float | None = None) -> Array:
+    """The state (2r,) of the reduced model at rest under gravity and `load`, as `find_equilibrium` has it."""
+    eta = find_equilibrium(basis, load, at_s)
     return np.concatenate([eta, np.zeros_like(eta)])
 
 

@@ -1,14 +1,12 @@
-"""Loads without kinematics: generalised forces from learned positions and directions.
+"""Loads without kinematics: generalised forces from learned positions.
 
 The study computes generalised forces analytically, from the kinematics of the model that the surrogate
-stands for. Here the points where forces act and the directions of the elements that couples twist are
-learned as functions of η, and virtual work gives
+stands for. Here the points where forces act are learned as functions of η, and virtual work gives
 
-    Q̂ = Σ (∂r̂_i/∂η)ᵀ f_i + Σ τ_i (∂ŷ_i/∂η)ᵀ ẑ_i
+    Q̂ = Σ (∂r̂_i/∂η)ᵀ f_i
 
-with ŷ, ẑ two axes of an element, whose components are the sines and cosines of its twist: ẑ · δŷ is its
-turn about its own x axis. Such couples have no potential. For a load of fixed shape f, τ, the map η → Q̂ is
-then fitted by itself: once as a polynomial, once as a network, both far smaller than the kinematics.
+For a load of fixed shape f the map η → Q̂ is then fitted by itself: once as a polynomial, once as a network,
+both far smaller than the kinematics. Loads along several axes that follow one history are one such shape.
 """
 
 from dataclasses import dataclass
@@ -16,12 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from flexsurr.beam import ModalBasis, chain, tip_position, tip_twist
+from flexsurr.beam import ModalBasis, chain, load_forces, tip_position, tip_twist
 from flexsurr.beam.kinematics import configuration, generalised_forces
 from flexsurr.beam.loads import Forces
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import EvaluationSettings, Variant
-from flexsurr.evaluation.cases import excitation
 from flexsurr.simulation.rhs import Array
 from flexsurr.surrogates import LearnedMap, NetworkMap, PolynomialMap
 from flexsurr.training import fit_network_map, fit_polynomial_map
@@ -32,9 +29,10 @@ AS_GOOD = 2.0  # even powers alone are kept if they err at most so much more
 
 @dataclass(frozen=True, eq=False)
 class LearnedKinematics:
-    """The map η → centres (N, 3), tip (3,), y axes (N, 3), z axes (N, 3) of the elements, one after another.
+    """The map η → centres (N, 3) and tip (3,) [m], and two numbers whose angle is the tip's twist.
 
-    In the clamp's frame before it is turned; positions in m.
+    In the clamp's frame before it is turned. The numbers are the components along the clamp's z of the last
+    element's y and z: the twist itself jumps, they do not.
     """
 
     structure: Structure
@@ -42,46 +40,27 @@ class LearnedKinematics:
 
     def tip(self, eta: Array) -> Array:
         """(k, 3) position of the tip [m] at η (k, r)."""
-        return self._parts(eta)[1][:, 0]
+        return self.outputs(eta)[:, -5:-2]
 
     def twist(self, eta: Array) -> Array:
         """(k,) twist of the tip against the clamp [rad] at η (k, r), as `tip_twist` defines it."""
-        *_, y, z = self._parts(eta)
-        up = chain(self.structure).clamp[:, 2]
-        return np.asarray(np.arctan2(y[:, -1] @ up, z[:, -1] @ up))
+        up = self.outputs(eta)[:, -2:]
+        return np.asarray(np.arctan2(up[:, 0], up[:, 1]))
 
     def generalised_force(self, eta: Array, load: Forces) -> Array:
         """Q̂ (k, r) at η (k, r), at a factor of 1."""
-        *_, z = self._parts(eta)
-        forces = np.zeros((len(eta), len(self.outputs.output_names)))
-        centres, tip, y, _ = self._split(forces)
-        centres[:], tip[:] = load.on_centres.ravel(), load.on_tip
-        y[:] = (load.couples[:, None] * z).reshape(y.shape)
+        forces = np.concatenate([load.on_centres.ravel(), load.on_tip, np.zeros(2)])
         return self.outputs.generalised_force(eta, forces)
-
-    def _split(self, values: Array) -> list[Array]:
-        """Views of the columns (k, m) of the centres, the tip, the y axes and the z axes."""
-        n = self.structure.elements
-        return np.split(values, [3 * n, 3 * n + 3, 6 * n + 3], axis=1)
-
-    def _parts(self, eta: Array) -> list[Array]:
-        return [part.reshape(len(eta), -1, 3) for part in self._split(self.outputs(eta))]
 
 
 def learn_kinematics(basis: ModalBasis, eta: Array, degree: int) -> LearnedKinematics:
     """Polynomials of total degree ≤ `degree` for everything, from what is seen at η (k, r)."""
     structure = basis.structure
     at = configuration(chain(structure), eta @ basis.modes.T)
-    parts = at.centres, at.nodes[:, -1:], at.frames[..., 1], at.frames[..., 2]
-    seen = np.hstack([part.reshape(len(eta), -1) for part in parts])
-    numbers = range(1, structure.elements + 1)
-    points = [
-        *(f"centre_{i}" for i in numbers),
-        "tip",
-        *(f"y_{i}" for i in numbers),
-        *(f"z_{i}" for i in numbers),
-    ]
-    names = tuple(f"{point}_{axis}" for point in points for axis in AXES)
+    up = np.swapaxes(at.frames[:, -1], -1, -2) @ chain(structure).clamp[:, 2]
+    seen = np.hstack([at.centres.reshape(len(eta), -1), at.nodes[:, -1], up[:, 1:]])
+    points = [*(f"centre_{i}" for i in range(1, structure.elements + 1)), "tip"]
+    names = (*(f"{point}_{axis}" for point in points for axis in AXES), "tip_y_up", "tip_z_up")
     return LearnedKinematics(structure, fit_polynomial_map(eta, seen, names, degree))
 
 
@@ -103,7 +82,7 @@ def learn_forces(
     Raises ValueError where a coordinate or a generalised force does not vary over the samples.
     """
     settings = evaluation.learned_load
-    load = excitation(evaluation, end_s=1.0).forces(basis.structure)
+    load = load_forces(basis.structure, evaluation.load)
     kinematics = learn_kinematics(basis, eta, settings.kinematics_degree)
     forces, expected = (kinematics.generalised_force(at, load) for at in (eta, held_out))
     names = tuple(f"Q{k + 1}" for k in range(eta.shape[1]))

@@ -5,7 +5,6 @@ import pandas as pd
 from scipy.optimize import brentq
 
 from flexsurr.beam import (
-    DeadTipForce,
     ModalBasis,
     elastica_tip,
     find_equilibrium,
@@ -14,6 +13,7 @@ from flexsurr.beam import (
     tip_position,
 )
 from flexsurr.beam.elastica import LARGEST_LOAD
+from flexsurr.config.load import TipForce
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Study
 from flexsurr.evaluation.cases import rest_state
@@ -33,7 +33,7 @@ def static_tip(study: Study, basis: ModalBasis) -> pd.DataFrame:
     model = reduced_order(basis, "hamiltonian", "numpy")
     rows = []
     for load_N in sorted(study.statics.tip_loads_N):
-        force = DeadTipForce(force_N=(0.0, 0.0, load_N))
+        force = TipForce(force_N=load_N)
         fom = tip_position(structure, find_equilibrium(structure, force))
         rom = model.tip(rest_state(basis, force))
         x_exact, z_exact = _exact_tip(structure, load_N)

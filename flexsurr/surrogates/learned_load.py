@@ -3,58 +3,38 @@
 A load of fixed shape follows one history, F(t) = s(t) f, and so do its generalised forces, s(t) Q̂(η).
 """
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from flexsurr.simulation.history import (
+    History,
+    HistoryKernel,
+    breakpoints,
+    history_factor,
+    history_kernel,
+)
 from flexsurr.simulation.rhs import Array, evaluate, implements_rhs, rhs
 from flexsurr.surrogates.learned_map import LearnedMap
 from flexsurr.surrogates.map_kernels import add_outputs
 
 
-class History(Protocol):
-    """The factor s(t) of a load: sin(ω t + phase) from start to end, else 0."""
-
-    @property
-    def start_s(self) -> float:
-        """When it begins [s]; may be −∞."""
-        ...
-
-    @property
-    def end_s(self) -> float:
-        """When it ends [s]; may be ∞."""
-        ...
-
-    @property
-    def frequency_rad_s(self) -> float:
-        """ω [rad/s]."""
-        ...
-
-    @property
-    def phase_rad(self) -> float:
-        """Phase at t = 0 [rad]."""
-        ...
-
-
 class LearnedLoadKernel(NamedTuple):
-    """A model's kernel, that of the forces, and the history's numbers."""
+    """A model's kernel, that of the forces, and the history."""
 
     model: Any
     forces: Any
-    start: float
-    end: float
-    frequency: float
-    phase: float
+    history: HistoryKernel
 
 
 @implements_rhs(LearnedLoadKernel, inline=False)
 def _learned_load(kernel, t, x, dx, work):
     rhs(kernel.model, t, x, dx, work)
-    if kernel.start <= t < kernel.end:
-        add_outputs(kernel.forces, math.sin(kernel.frequency * t + kernel.phase), x, dx, work)
+    factor = history_factor(kernel.history, t)
+    if factor != 0.0:
+        add_outputs(kernel.forces, factor, x, dx, work)
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,8 +69,7 @@ class LearnedLoad:
     @property
     def breakpoints(self) -> tuple[float, ...]:
         """Times [s] at which the load, or the model itself, may jump."""
-        ends = (time for time in (self.history.start_s, self.history.end_s) if math.isfinite(time))
-        return tuple(sorted({*self.model.breakpoints, *ends}))
+        return tuple(sorted({*self.model.breakpoints, *breakpoints(self.history)}))
 
     @property
     def energy(self) -> Any:
@@ -100,9 +79,7 @@ class LearnedLoad:
     @cached_property
     def _compiled(self) -> tuple[NamedTuple, int]:
         forces, size = self.forces.kernel()
-        history = self.history
-        times = history.start_s, history.end_s, history.frequency_rad_s, history.phase_rad
-        return LearnedLoadKernel(self.model.kernel, forces, *map(float, times)), size
+        return LearnedLoadKernel(self.model.kernel, forces, history_kernel(self.history)), size
 
     @property
     def kernel(self) -> NamedTuple:

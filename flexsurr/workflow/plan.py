@@ -49,8 +49,7 @@ STATICS = ("reduction", "statics")
 VALIDATION = (
     "reduction",
     "variants",
-    "evaluation.force",
-    "evaluation.distributed",
+    "evaluation.load",
     "evaluation.validation_duration_s",
     "evaluation.validation_integrator",
 )
@@ -61,16 +60,15 @@ EVALUATION = (
     "evaluation.duration_s",
     "evaluation.output_step_s",
     "evaluation.simulations",
-    "evaluation.force",
-    "evaluation.distributed",
+    "evaluation.load",
+    "evaluation.longest_load_s",
     "evaluation.integrators",
     "evaluation.reference_integrator",
 )
 RESPONSES = (*EVALUATION, "evaluation.drawing_integrator", "evaluation.energy_integrator")
 LEARNED_LOAD = (
     "reduction",
-    "evaluation.force",
-    "evaluation.distributed",
+    "evaluation.load",
     "evaluation.learned_load",
 )
 COST = (

@@ -1,11 +1,13 @@
 """Structures for the tests of the beam, and hypothesis strategies for them."""
 
+import math
 from itertools import combinations
 
 import numpy as np
 from hypothesis import strategies as st
 
 from flexsurr.beam import ModalBasis, mass_matrix, reduce
+from flexsurr.config.load import DistributedForce, Spread, TipForce
 from flexsurr.config.structure import JOINTS, Structure
 from flexsurr.config.study import Reduction
 
@@ -86,6 +88,17 @@ def state(system: Structure | ModalBasis, seed: int) -> np.ndarray:
 def basis_of(structure: Structure, modes: int = 3, normalisation: str = "mass"):
     """The first modes, or as many as there are."""
     return reduce(structure, Reduction(modes=min(modes, structure.coordinates), normalisation=normalisation))
+
+
+def tip_force(x: float, y: float, z: float) -> TipForce:
+    """A constant force at the tip by its components [N]."""
+    return TipForce(force_N=math.hypot(x, y, z), direction=(x, y, z) if any((x, y, z)) else (0.0, 0.0, 1.0))
+
+
+def uniform_force(x: float, y: float, z: float, **more: object) -> DistributedForce:
+    """A force per length by its components [N/m]."""
+    spreads = {f"along_{axis}": Spread(force_N_m=size) for axis, size in zip("xyz", (x, y, z), strict=True)}
+    return DistributedForce(**spreads, **more)
 
 
 SEEDS = st.integers(0, 2**32 - 1)

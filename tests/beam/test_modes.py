@@ -2,10 +2,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from structures import ALL_JOINTS, CANTILEVER, SUBSETS, basis_of, change, structures
+from structures import ALL_JOINTS, CANTILEVER, SUBSETS, basis_of, change, structures, tip_force
 
 from flexsurr.beam import (
-    DeadTipForce,
     find_equilibrium,
     full_order,
     mass_matrix,
@@ -77,7 +76,7 @@ def test_frequencies_are_those_of_the_linearised_model(joints, about_equilibrium
 
 
 def test_a_tip_load_shifts_the_frequencies():
-    load = DeadTipForce((0.0, 0.0, 100.0))
+    load = tip_force(0.0, 0.0, 100.0)
     unloaded, _ = natural_modes(CANTILEVER, np.zeros(10))
     loaded, _ = natural_modes(CANTILEVER, find_equilibrium(CANTILEVER, load), load)
     assert abs(loaded[0] / unloaded[0] - 1.0) > 0.01
@@ -85,7 +84,7 @@ def test_a_tip_load_shifts_the_frequencies():
 
 def test_compression_beyond_buckling_is_unstable():
     with pytest.raises(ValueError, match="unstable"):
-        natural_modes(CANTILEVER, np.zeros(10), DeadTipForce((-200.0, 0.0, 0.0)))
+        natural_modes(CANTILEVER, np.zeros(10), tip_force(-200.0, 0.0, 0.0))
 
 
 @settings(max_examples=30)

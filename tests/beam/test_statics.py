@@ -5,19 +5,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_bvp
-from structures import ALL_JOINTS, CANTILEVER, basis_of, change, structures
+from structures import ALL_JOINTS, CANTILEVER, basis_of, change, structures, tip_force, uniform_force
 
 from flexsurr.beam import (
-    DeadTipForce,
-    DistributedForce,
     EquilibriumNotFound,
-    SineTipForce,
     elastica_tip,
     find_equilibrium,
     natural_modes,
     tip_position,
 )
 from flexsurr.beam.equilibrium import static_residual
+from flexsurr.config.load import Power, TipForce
 
 LOADS = [10.0, 50.0, 100.0, 150.0]
 
@@ -53,7 +51,7 @@ def test_full_order_statics_converge_to_the_elastica_at_second_order(force):
     errors = []
     for count in counts:
         structure = change(CANTILEVER, elements=int(count))
-        tip = tip_position(structure, find_equilibrium(structure, DeadTipForce((0.0, 0.0, force))))
+        tip = tip_position(structure, find_equilibrium(structure, tip_force(0.0, 0.0, force)))
         errors.append(np.hypot(tip[0] - x, tip[2] - z))
     order = -np.polyfit(np.log(counts), np.log(errors), 1)[0]
     assert 1.9 < order < 2.1
@@ -61,7 +59,7 @@ def test_full_order_statics_converge_to_the_elastica_at_second_order(force):
 
 
 def test_the_clamp_spring_makes_a_small_tip_load_exact():
-    tip = tip_position(CANTILEVER, find_equilibrium(CANTILEVER, DeadTipForce((0.0, 0.0, 1e-6))))
+    tip = tip_position(CANTILEVER, find_equilibrium(CANTILEVER, tip_force(0.0, 0.0, 1e-6)))
     assert tip[2] == pytest.approx(1e-6 / 150.0, rel=1e-9)
 
 
@@ -69,7 +67,7 @@ def test_the_clamp_spring_makes_a_small_tip_load_exact():
 @given(
     structures(),
     st.tuples(*[st.floats(-20.0, 20.0)] * 3).flatmap(
-        lambda force: st.sampled_from([None, DeadTipForce(force), DistributedForce(force)])
+        lambda force: st.sampled_from([None, tip_force(*force), uniform_force(*force)])
     ),
 )
 def test_equilibria_balance_springs_and_loads(structure, load):
@@ -80,7 +78,7 @@ def test_equilibria_balance_springs_and_loads(structure, load):
 
 def lifted(structure, load, modes=None):
     """The tip under F L²/EI = load along z, of the full-order model or of a reduced one."""
-    force = DeadTipForce((0.0, 0.0, 50.0 * load))
+    force = tip_force(0.0, 0.0, 50.0 * load)
     if modes is None:
         return tip_position(structure, find_equilibrium(structure, force))
     basis = basis_of(structure, modes, "unit")
@@ -110,7 +108,7 @@ def test_the_error_against_the_elastica_is_of_second_order_at_every_load(load):
 
 def test_a_strip_is_lifted_whose_load_no_root_finder_reached():
     strip = change(CANTILEVER, length_m=0.6, bending_stiffness_out_of_plane_N_m2=1.2)
-    basis, force = basis_of(strip, 1), DeadTipForce((0.0, 0.0, 40.0))
+    basis, force = basis_of(strip, 1), tip_force(0.0, 0.0, 40.0)
     assert tip_position(strip, basis.modes @ find_equilibrium(basis, force))[2] == pytest.approx(
         0.488, abs=1e-3
     )
@@ -128,17 +126,15 @@ def refusal(system, load=None):
 def test_compression_is_borne_up_to_eulers_load(elements):
     structure = change(CANTILEVER, elements=elements)
     critical = np.pi**2 * 50.0 / 4.0
-    np.testing.assert_array_equal(
-        find_equilibrium(structure, DeadTipForce((-0.99 * critical, 0.0, 0.0))), 0.0
-    )
+    np.testing.assert_array_equal(find_equilibrium(structure, tip_force(-0.99 * critical, 0.0, 0.0)), 0.0)
     for load in (1.01, 2.0, 30.0):
-        message = refusal(structure, DeadTipForce((-load * critical, 0.0, 0.0)))
-        found = float(re.match(r"cantilever: buckles at (\S+) N \(DeadTipForce", message)[1])
+        message = refusal(structure, tip_force(-load * critical, 0.0, 0.0))
+        found = float(re.match(r"cantilever: buckles at (\S+) N \(tip force\)", message)[1])
         assert found == pytest.approx(critical, rel=0.15 / elements**2 + 5e-4)
 
 
 def test_a_reduced_column_buckles_later_for_it_can_bend_less_freely():
-    force = DeadTipForce((-400.0, 0.0, 0.0))
+    force = tip_force(-400.0, 0.0, 0.0)
     critical = [
         float(re.search(r"buckles at (\S+) N", refusal(basis_of(CANTILEVER, modes), force))[1])
         for modes in (1, 2, 4, 10)
@@ -149,7 +145,7 @@ def test_a_reduced_column_buckles_later_for_it_can_bend_less_freely():
 
 
 def test_a_compressed_beam_that_is_bent_a_little_does_not_buckle():
-    load = DeadTipForce((-400.0, 0.0, 0.1))
+    load = tip_force(-400.0, 0.0, 0.1)
     q = find_equilibrium(CANTILEVER, load)
     assert tip_position(CANTILEVER, q)[2] > 0.3
     assert natural_modes(CANTILEVER, q, load)[0][0] > 0.0
@@ -172,7 +168,7 @@ def test_a_beam_hangs_from_its_clamp_and_stands_on_it_until_it_is_too_heavy(weig
 
 def test_weight_and_load_that_buckle_together_are_told_together():
     standing = change(CANTILEVER, clamp_theta_deg=90.0, gravity_m_s2=9.81)
-    message = refusal(standing, DeadTipForce((0.0, 0.0, -200.0)))
+    message = refusal(standing, tip_force(0.0, 0.0, -200.0))
     assert re.fullmatch(r"cantilever: buckles at \S+ N \(.*\) under \S+ % of its own weight", message)
 
 
@@ -205,13 +201,17 @@ def test_weight_bends_the_beam_as_its_distributed_force_does():
     """Without an offset the masses lie on the elastic axis at the elements' centres."""
     heavy = change(ALL_JOINTS, centre_of_gravity_offset_m=0.0)
     light = change(heavy, gravity_m_s2=0.0)
-    weight = DistributedForce((0.0, 0.0, -9.81 * 0.4))
+    weight = uniform_force(0.0, 0.0, -9.81 * 0.4)
     np.testing.assert_allclose(find_equilibrium(heavy), find_equilibrium(light, weight), atol=1e-12)
 
 
 def test_a_load_that_changes_with_time_has_no_equilibrium():
+    load = TipForce(force_N=10.0, history=Power(exponent=2, end_s=9.0))
     with pytest.raises(ValueError, match="changes with time"):
-        find_equilibrium(CANTILEVER, SineTipForce(10.0, 50.0))
+        find_equilibrium(CANTILEVER, load)
+    held = find_equilibrium(CANTILEVER, load, at_s=3.0)
+    np.testing.assert_allclose(held, find_equilibrium(CANTILEVER, tip_force(0.0, 0.0, 90.0)), rtol=1e-12)
+    np.testing.assert_array_equal(find_equilibrium(CANTILEVER, load, at_s=9.0), 0.0)
 
 
 @pytest.mark.parametrize(

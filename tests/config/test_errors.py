@@ -41,7 +41,8 @@ def refusal(root: Path, *files: str) -> str:
     return str(caught.value)
 
 
-LOAD = {"force_N_m": 1.0, "frequency_rad_s": 2.0}
+SPREAD = {"kind": "distributed", "along_z": {"force_N_m": 1.0}}
+PUSH = {"kind": "tip_force", "force_N": 1.0}
 BAD_VALUES = [
     (CONFIG, "resutls", "x", ["resutls", "'x'", "did you mean 'results'", "tracking"]),
     (CONFIG, "studies", [], ["studies", "[]", "at least one value"]),
@@ -80,9 +81,37 @@ BAD_VALUES = [
     (STUDY, "further_datasets", {"many": {}}, ["further_datasets.many.seed", "2024", "another seed"]),
     (STUDY, "further_datasets", {"default": {"seed": 1}}, ["further_datasets", "'default'", "another name"]),
     (STUDY, "further_datasets", {"a b": {"seed": 1}}, ["further_datasets", "'a b'", "plain name"]),
-    (STUDY, "evaluation.distributed", {**LOAD, "to_m": 1.5}, ["evaluation.distributed", "1.5 m", "the span"]),
-    (STUDY, "evaluation.distributed", {**LOAD, "from_m": -1}, ["distributed.from_m", "-1", "greater than"]),
-    (STUDY, "evaluation.distributed", {**LOAD, "shape": "oval"}, ["distributed.shape", "'oval'", "elliptic"]),
+    (STUDY, "evaluation.load", {**SPREAD, "to_m": 1.5}, ["evaluation.load: ", "1.5 m", "the span"]),
+    (STUDY, "evaluation.load", {**SPREAD, "from_m": -1}, ["evaluation.load.from_m", "-1", "greater than"]),
+    (STUDY, "evaluation.load", {"kind": "distributed"}, ["evaluation.load: along_x", "at least one"]),
+    (STUDY, "evaluation.load.kind", "gust", ["evaluation.load.kind", "'gust'", "'tip_force', 'distributed'"]),
+    (STUDY, "evaluation.load", {"force_N": 1.0}, ["evaluation.load.kind: missing"]),
+    (STUDY, "evaluation.load.force", 1.0, ["evaluation.load.force:", "did you mean 'force_N'"]),
+    (STUDY, "evaluation.load", {**SPREAD, "acts_on": "root"}, ["load.acts_on", "'root'", "'span' or 'tip'"]),
+    (
+        STUDY,
+        "evaluation.load",
+        {**SPREAD, "along_z": {"force_N_m": 1.0, "shape": "oval"}},
+        ["evaluation.load.along_z.shape", "'oval'", "one_minus_elliptic"],
+    ),
+    (STUDY, "evaluation.load.direction", [0, 0, 0], ["evaluation.load: direction", "zero vector"]),
+    (STUDY, "evaluation.load.direction", [0, 1, 0], ["evaluation.load: no joint feels it", "out_of_plane"]),
+    (STUDY, "evaluation.load", {**PUSH, "force_N": 0.0}, ["evaluation.load: no joint feels it"]),
+    (
+        STUDY,
+        "evaluation.load.history.frequency_rad_s",
+        0.0,
+        ["load.history.frequency_rad_s", "greater than 0"],
+    ),
+    (STUDY, "evaluation.load.history", {"kind": "cosine"}, ["load.history.kind", "'cosine'", "'power'"]),
+    (
+        STUDY,
+        "evaluation.load.history.exponent",
+        2,
+        ["evaluation.load.history.exponent", "unknown key", "phase_rad"],
+    ),
+    (STUDY, "evaluation.load.history.end_s", -1.0, ["evaluation.load.history.end_s", "greater than 0"]),
+    (STUDY, "evaluation.load.history.start_s", 7.0, ["longest_load_s: 5.0", "more than 7.0"]),
     (STUDY, "frequencies_also_of", ["absent.yaml"], ["frequencies_also_of", "absent.yaml", "no file"]),
     (STRUCTURE, "damping_torsion_s", -10.0, ["damping_torsion_s", "-10.0", "greater than or equal to 0"]),
     (STRUCTURE, "centre_of_gravity_offset_m", 0.2, ["centre_of_gravity_offset_m", "0.2", "chord", "0.1 m"]),

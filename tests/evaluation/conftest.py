@@ -12,7 +12,6 @@ from flexsurr.config.study import (
     Reduction,
     Statics,
     Study,
-    TipForce,
 )
 from flexsurr.simulation import simulate
 from flexsurr.storage import Scales
@@ -48,7 +47,7 @@ def study():
             output_step_s=0.01,
             repeats=2,
             long_responses=2,
-            force=TipForce(longest_s=0.2),
+            longest_load_s=0.2,
             validation_duration_s=0.5,
             reference_integrator=TIGHT,
             judging_integrator=TIGHT,

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from flexsurr.beam import DeadTipForce, draw_initial_conditions, reduced_order
+from flexsurr.beam import draw_initial_conditions, reduced_order
+from flexsurr.config.load import TipForce
 from flexsurr.evaluation.cases import (
     FIRST_EVALUATION_CASE,
     FIRST_SELECTION_CASE,
@@ -34,7 +35,7 @@ def test_no_state_is_used_for_two_purposes(study, basis):
 
 def test_forces_end_at_random_within_the_longest_time(study, basis):
     ends = [case.free_from_s for case in forced_cases(basis, study, 0, 200)]
-    longest_s = study.evaluation.force.longest_s
+    longest_s = study.evaluation.longest_load_s
     assert 0.0 < min(ends) < 0.1 * longest_s
     assert 0.9 * longest_s < max(ends) <= longest_s
 
@@ -49,7 +50,7 @@ def test_forced_responses_start_at_rest_and_free_ones_know_no_load(study, basis)
 
 
 def test_at_rest_under_a_load_spring_and_load_balance(basis):
-    state = rest_state(basis, DeadTipForce(force_N=(0.0, 0.0, 50.0)))
+    state = rest_state(basis, TipForce(force_N=50.0))
     model = reduced_order(basis, "hamiltonian", "numpy")
     step = 1e-6 * np.array([1.0, 0.0])
     work = 50.0 * (model.tip(state + step)[2] - model.tip(state - step)[2]) / 2e-6

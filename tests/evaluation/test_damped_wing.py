@@ -4,15 +4,13 @@ import numpy as np
 import pytest
 
 from flexsurr.beam import draw_initial_conditions, loaded, reduce, reduced_order
+from flexsurr.config.load import DistributedForce, Power, Spread
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import (
-    DistributedLoad,
-    EvaluationSettings,
     InitialConditions,
     Integrator,
     Reduction,
 )
-from flexsurr.evaluation.cases import excitation
 from flexsurr.evaluation.dissipative_structure import dissipative_asymmetry
 from flexsurr.evaluation.energy_balance import energy_balance
 from flexsurr.simulation import simulate
@@ -33,13 +31,10 @@ WING = Structure(
 )
 # SciPy's: nothing to compile
 TIGHT = Integrator(method="scipy_radau", rtol=1e-9, atol=1e-11)
-LOAD = excitation(
-    EvaluationSettings(
-        distributed=DistributedLoad(
-            force_N_m=10.0, couple_N_m_m=20.0, frequency_rad_s=2.0, shape="elliptic", longest_s=5.0
-        )
-    ),
-    2.0,
+LOAD = DistributedForce(
+    along_y=Spread(force_N_m=0.5, shape="one_minus_elliptic"),
+    along_z=Spread(force_N_m=2.0, shape="elliptic"),
+    history=Power(exponent=2, end_s=2.0),
 )
 
 

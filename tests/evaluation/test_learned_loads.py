@@ -3,16 +3,16 @@
 import numpy as np
 import pytest
 
-from flexsurr.beam import loaded, reduce, reduced_order
+from flexsurr.beam import load_forces, loaded, reduce, reduced_order
 from flexsurr.beam.loads import Forces
+from flexsurr.config.load import DistributedForce, Power, Spread
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import (
-    DistributedLoad,
     EvaluationSettings,
     LearnedLoadSettings,
     Reduction,
 )
-from flexsurr.evaluation.cases import evaluation_cases, excitation
+from flexsurr.evaluation.cases import evaluation_cases
 from flexsurr.evaluation.contenders import with_learned_loads
 from flexsurr.evaluation.cost import cost_table
 from flexsurr.evaluation.learned_loads import (
@@ -51,23 +51,27 @@ def coordinates(count):
 
 
 def settings(**learned):
-    load = DistributedLoad(force_N_m=3.0, couple_N_m_m=2.0, frequency_rad_s=1.0, shape="elliptic")
-    return EvaluationSettings(distributed=load, learned_load=LearnedLoadSettings(**learned))
+    load = DistributedForce(
+        along_y=Spread(force_N_m=1.0, shape="one_minus_elliptic"),
+        along_z=Spread(force_N_m=3.0, shape="elliptic"),
+        history=Power(exponent=2),
+    )
+    return EvaluationSettings(load=load, learned_load=LearnedLoadSettings(**learned))
 
 
 def test_the_exact_forces_are_those_of_the_loaded_model(twisted):
-    load = excitation(settings(), end_s=1.0)
+    load = settings().load
     model = loaded(reduced_order(twisted, "hamiltonian", "numpy"), twisted, load, "numpy")
     eta = coordinates(4)
     expected = [model.generalised_force(at) for at in eta]
-    np.testing.assert_allclose(exact_forces(twisted, load.forces(TWISTED), eta), expected, rtol=1e-12)
+    np.testing.assert_allclose(exact_forces(twisted, load_forces(TWISTED, load), eta), expected, rtol=1e-12)
 
 
-@pytest.mark.parametrize("what", ["on_centres", "on_tip", "couples"])
+@pytest.mark.parametrize("what", ["on_centres", "on_tip"])
 def test_virtual_work_of_what_was_learned_is_that_of_the_kinematics(twisted, what):
-    """Forces and couples alike, and the better the degree the closer."""
+    """On the centres and on the tip, and the better the degree the closer."""
     n = TWISTED.elements
-    load = Forces(np.zeros((n, 3)), np.zeros(3), np.zeros(n))
+    load = Forces(np.zeros((n, 3)), np.zeros(3))
     load = load._replace(**{what: GENERATOR.normal(size=getattr(load, what).shape)})
     eta, held_out = coordinates(1500), coordinates(100)
     exact = exact_forces(twisted, load, held_out)

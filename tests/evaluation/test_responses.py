@@ -21,7 +21,7 @@ def test_the_force_moves_the_tip_from_rest(study, basis, fitted):
     polynomial = table[table["model"] == "polynomial"]
     assert polynomial["tip_z_m"].iloc[0] == pytest.approx(0.0, abs=1e-12)
     assert polynomial["tip_z_m"].abs().max() > 0.01
-    assert 0.0 < polynomial["load_end_s"].iloc[0] <= study.evaluation.force.longest_s
+    assert 0.0 < polynomial["load_end_s"].iloc[0] <= study.evaluation.longest_load_s
 
 
 def test_a_response_that_explodes_ends_its_rows(study, basis, exploding):

@@ -64,7 +64,7 @@ CHANGES = [
     (STUDY, "dataset.step_s", 0.002, ALL_DATA),
     (STUDY, "dataset.training_fraction", 0.7, {"manifest"}),
     (STUDY, "dataset.initial_conditions.q_max_deg", 10.0, ALL_DATA | SCORED),
-    (STUDY, "evaluation.force.amplitude_N", 5.0, {"validation", "respond", "cost"}),
+    (STUDY, "evaluation.load.force_N", 5.0, {"validation", "respond", "cost"}),
     (QUICK, f"{OVER}.evaluation.judging_integrator", {"method": "dop853"}, {"score"}),
     (QUICK, f"{OVER}.evaluation.drawing_integrator", {"method": "radau_iia_5"}, {"respond"}),
     (QUICK, f"{OVER}.evaluation.reference_integrator", {"method": "radau_iia_5"}, SCORED),

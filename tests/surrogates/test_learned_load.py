@@ -1,6 +1,6 @@
 """Learned kinematics and the loads made of them: virtual work, and the same compiled."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from random_surrogates import HAMILTONIANS, PORT_HAMILTONIANS, network
 
+from flexsurr.config.load import Constant, Sine
 from flexsurr.config.study import Integrator
 from flexsurr.simulation import simulate
 from flexsurr.surrogates import (
@@ -27,14 +28,7 @@ SEEDS = st.integers(0, 2**32 - 1)
 SCALES = np.array([0.4, 2.0, 0.1])
 
 
-@dataclass(frozen=True)
-class Sine:
-    """A history."""
-
-    start_s: float = 0.1
-    end_s: float = 0.7
-    frequency_rad_s: float = 9.0
-    phase_rad: float = 0.3
+SINE = Sine(start_s=0.1, end_s=0.7, frequency_rad_s=9.0, phase_rad=0.3)
 
 
 def polynomial(seed=0):
@@ -83,7 +77,7 @@ def forces(kind, seed=0):
 def test_compiled_it_adds_the_forces_while_they_act(kind):
     learned = forces(kind)
     model = compiled(PORT_HAMILTONIANS["even"])
-    loaded = LearnedLoad(model, learned, Sine())
+    loaded = LearnedLoad(model, learned, SINE)
     assert loaded.breakpoints == (0.1, 0.7)
     assert (loaded.state_names, loaded.state_units) == (model.state_names, model.state_units)
     x = np.concatenate([0.5 * SCALES, [0.3, -1.0, 2.0]])
@@ -103,9 +97,8 @@ def test_it_works_on_what_it_loads():
         s = eta / 0.3
         return 0.3 * (5.0 * s - 2.0 * s**2 + 1.5 * s**3)
 
-    constant = Sine(start_s=-np.inf, end_s=np.inf, frequency_rad_s=0.0, phase_rad=0.5 * np.pi)
-    model = LearnedLoad(compiled(HAMILTONIANS["even"]), learned, constant)
-    assert model.breakpoints == ()
+    model = LearnedLoad(compiled(HAMILTONIANS["even"]), learned, Constant())
+    assert model.breakpoints == (0.0,)
     t = np.linspace(0.0, 0.01, 5)
     x = simulate(model, t, np.array([0.1, 0.5]), Integrator(method="rk4", step_s=5e-5)).x
     balance = model.energy(x) - potential(x[:, 0])
@@ -149,6 +142,6 @@ def test_what_makes_no_map_is_refused(changes, reason):
 
 def test_loads_that_do_not_fit_are_refused():
     with pytest.raises(ValueError, match="3 coordinates to 5 forces does not fit the states"):
-        LearnedLoad(compiled(network(HNN, 6, (3,), "atan")), polynomial(), Sine())
+        LearnedLoad(compiled(network(HNN, 6, (3,), "atan")), polynomial(), SINE)
     with pytest.raises(ValueError, match="3 coordinates to 3 forces does not fit the states"):
-        LearnedLoad(compiled(HAMILTONIANS["even"]), forces("network"), Sine())
+        LearnedLoad(compiled(HAMILTONIANS["even"]), forces("network"), SINE)
