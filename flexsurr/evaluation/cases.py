@@ -20,7 +20,8 @@ from flexsurr.simulation import simulate
 from flexsurr.simulation.history import end_s
 from flexsurr.simulation.rhs import Array, Model
 
-Response = Literal["free", "forced"]
+Response = Literal["free", "forced", "sustained"]
+"""Free; from rest under the study's load until a random time; the same as long as the load may act."""
 
 # A trajectory is drawn from its number. Training uses the numbers from 0; these lie out of reach, and
 # apart, so that a model is not judged by the responses that selected it.
@@ -81,7 +82,13 @@ def forced_cases(basis: ModalBasis, study: Study, first: int, count: int) -> lis
 
 
 def evaluation_cases(basis: ModalBasis, study: Study, response: Response) -> list[Case]:
-    """The simulations of one response of the study, the same for every model and variant."""
+    """The simulations of one response of the study, the same for every model and variant.
+
+    A sustained response is one simulation.
+    """
+    if response == "sustained":
+        load = excitation(study.evaluation, study.evaluation.longest_load_s)
+        return [Case(number=FIRST_EVALUATION_CASE, x0=rest_state(basis), load=load)]
     draw = free_cases if response == "free" else forced_cases
     return draw(basis, study, FIRST_EVALUATION_CASE, study.evaluation.simulations)
 

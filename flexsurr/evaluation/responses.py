@@ -27,6 +27,7 @@ RESPONSE_COLUMNS = (
     "model",
     "t_s",
     "tip_x_m",
+    "tip_y_m",
     "tip_z_m",
     "tip_twist_rad",
     "tip_error_percent",
@@ -37,7 +38,7 @@ RESPONSE_COLUMNS = (
 def response_table(
     study: Study, basis: ModalBasis, variant: Variant, response: Response, surrogates: Mapping[str, Any]
 ) -> pd.DataFrame:
-    """The first simulation of `response`: model "reference" and each surrogate (Figs. 10 and 12).
+    """The first simulation of `response`: model "reference" and each surrogate (Figs. 10, 12, 14, 15).
 
     Columns `RESPONSE_COLUMNS`: tip position in the clamp's frame [m], twist of the tip, distance from the
     reference in percent of its largest tip displacement, and the time [s] at which the load ends (0 where
@@ -68,6 +69,7 @@ def _frame(
             "model": model,
             "t_s": reference.t[: tip.shape[0]],
             "tip_x_m": tip[:, 0],
+            "tip_y_m": tip[:, 1],
             "tip_z_m": tip[:, 2],
             "tip_twist_rad": np.unwrap(exact.twist(x)),
             "tip_error_percent": tip_error_percent(reference, tip),

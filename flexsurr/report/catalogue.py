@@ -24,6 +24,16 @@ def any_structure(structure: Structure) -> bool:
     return True
 
 
+def cantilever(structure: Structure) -> bool:
+    """Whether it is the paper's cantilever (its Figs. 8 to 10, 12 and 13)."""
+    return structure.name == "cantilever"
+
+
+def wing(structure: Structure) -> bool:
+    """Whether it is the paper's wing (its Figs. 14 and 15)."""
+    return structure.name == "wing"
+
+
 def conservative(structure: Structure) -> bool:
     """Whether nothing of the structure is damped."""
     return not structure.dissipates
@@ -49,15 +59,22 @@ FIGURES: dict[str, Product] = {
     "figure_05": Product("Multilayer perceptron"),
     "figure_06": Product("Hamiltonian neural network", shows=conservative),
     "figure_07": Product("Dissipative Hamiltonian neural network", shows=damped),
-    "figure_08": Product("Tip under static loads", ("statics",)),
-    "figure_09": Product("Tip under a harmonic load", ("validation",)),
-    "figure_10": Product("Free response", ("response-*-free",), conservative),
+    "figure_08": Product("Tip under static loads", ("statics",), cantilever),
+    "figure_09": Product("Tip under a harmonic load", ("validation",), cantilever),
+    "figure_10": Product("Free response", ("response-*-free",), cantilever),
     "figure_11": Product("Augmented surrogate"),
-    "figure_12": Product("Forced response", ("response-*-forced",), conservative),
-    "figure_13": Product("Total energy", ("energy-*",), conservative),
-    "figure_14": Product("Free response", ("response-*-free",), damped),
-    "figure_15": Product("Forced response", ("response-*-forced",), damped),
-    "energy_decay": Product("Total energy", ("energy-*",), damped),
+    "figure_12": Product("Response under a harmonic load", ("response-*-sustained",), cantilever),
+    "figure_13": Product("Total energy", ("energy-*",), cantilever),
+    "figure_14": Product("Free response", ("response-*-free",), wing),
+    "figure_15": Product("Response to lift and drag", ("response-*-sustained",), wing),
+    "static_deflection": Product("Static deflection, and its errors", ("statics",)),
+    "reduced_against_full": Product("Reduced against full order", ("validation",)),
+    "free_response_of_every_model": Product("Free response of every model", ("structure", "response-*-free")),
+    "forced_response_of_every_model": Product(
+        "Forced response of every model", ("structure", "response-*-forced")
+    ),
+    "energy_drift": Product("Drift of energy, models and integrators", ("energy-*",), conservative),
+    "energy_decay": Product("Total energy, free and forced", ("energy-*",), damped),
     "architecture_errors": Product("Errors by architecture", ("relatives",), damped),
     "cost_accuracy": Product("Cost against accuracy", ("cost-*-*",)),
     "training_loss": Product("Training loss against wall time", ("history", "metrics")),

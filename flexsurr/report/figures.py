@@ -15,12 +15,15 @@ from flexsurr.report.airliner_flight_figures import (
 from flexsurr.report.airliner_geometry_figures import elastic_modes, figure_16, figure_17
 from flexsurr.report.airliner_learning_figures import coefficient_errors
 from flexsurr.report.architecture_figures import architecture_errors
-from flexsurr.report.beam_figures import figure_08, figure_09
+from flexsurr.report.beam_figures import figure_08, figure_09, reduced_against_full, static_deflection
 from flexsurr.report.cost_figures import cost_accuracy
-from flexsurr.report.damped_figures import energy_decay, figure_14, figure_15
-from flexsurr.report.energy_figures import figure_13
+from flexsurr.report.energy_figures import energy_decay, energy_drift, figure_13
+from flexsurr.report.every_model_figures import (
+    forced_response_of_every_model,
+    free_response_of_every_model,
+)
 from flexsurr.report.kinematic_figures import figure_03, figure_04
-from flexsurr.report.response_figures import figure_10, figure_12
+from flexsurr.report.response_figures import figure_10, figure_12, figure_14, figure_15
 from flexsurr.report.schematics import figure_05, figure_06, figure_07, figure_11
 from flexsurr.report.training_figures import training_epochs, training_loss
 
@@ -56,6 +59,11 @@ DRAW: dict[str, Callable[..., Figure]] = {
         figure_13,
         figure_14,
         figure_15,
+        static_deflection,
+        reduced_against_full,
+        free_response_of_every_model,
+        forced_response_of_every_model,
+        energy_drift,
         energy_decay,
         architecture_errors,
         cost_accuracy,

@@ -1,4 +1,4 @@
-"""The chain and its frames, drawn from the kinematics that the models use: Figs. 3 and 4 of the study."""
+"""The chain and its frames, drawn from the kinematics that the models use: Figs. 3 and 4 of the paper."""
 
 from collections.abc import Sequence
 
@@ -10,14 +10,15 @@ from matplotlib.patches import Arc, Circle, Polygon, Rectangle
 from flexsurr.beam import element_frames, node_positions
 from flexsurr.config.structure import Structure
 from flexsurr.report.diagram import arrow, canvas, pair
-from flexsurr.report.style import BLACK, BLUE, GREEN, GREY, PAGE_IN, VERMILION, styled
+from flexsurr.report.style import BLACK, BLUE, GREY, PAGE_IN, VERMILION, styled
 from flexsurr.simulation.rhs import Array
 
 DRAWN_ELEMENTS = 5
 """Few enough to see each; the models have as many as their configuration says."""
 
-# Shades of the three axes of a frame.
-AXES_COLOURS = (VERMILION, GREEN, BLUE)
+FRAMED_ELEMENT = 4
+"""The element whose frames are drawn."""
+
 POSITION = "#9B4F86"
 
 
@@ -96,49 +97,64 @@ def figure_03(structure: Structure) -> Figure:
 
 @styled
 def figure_04(structure: Structure) -> Figure:
-    """Frames: the inertial one, that of each element, and the position vector of one lumped mass."""
-    beam = _few_elements(structure, ("in_plane", "out_of_plane", "torsion"))
-    q = np.deg2rad(np.repeat([3.0, 7.0, -4.0], DRAWN_ELEMENTS))
-    nodes, frames = node_positions(beam, q), element_frames(beam, q)
-    length = beam.length_m / DRAWN_ELEMENTS
-    offset = 0.055 * beam.length_m
-    masses = nodes[:-1] + 0.5 * length * frames[..., 0] + offset * frames[..., 1]
-
-    units = 1.3 * beam.length_m / PAGE_IN / 0.72
-    figure, ax = canvas(PAGE_IN * 0.72, 2.75, units)
-    origin = np.array([0.25, 0.12]) * beam.length_m
-
-    half_chord = 0.09 * beam.length_m
-    for i in range(DRAWN_ELEMENTS):
-        y = half_chord * frames[i, :, 1]
-        corners = np.array([nodes[i] - y, nodes[i + 1] - y, nodes[i + 1] + y, nodes[i] + y])
-        ax.add_patch(
-            Polygon(_seen(origin, corners), facecolor="#EFEFEF", edgecolor="#9A9A9A", linewidth=0.7, zorder=1)
-        )
-    ax.plot(*_seen(origin, nodes).T, color=GREY, linewidth=1.0, zorder=1.5)
-    for i in range(DRAWN_ELEMENTS):
-        names = "xyz" if i == DRAWN_ELEMENTS - 1 else ""
-        _frame(
-            ax, origin, nodes[i], frames[i], 0.11 * beam.length_m, AXES_COLOURS, [f"${n}_5$" for n in names]
-        )
-        ax.add_patch(Circle(pair(_seen(origin, masses[i])), 0.012 * beam.length_m, facecolor=BLACK, zorder=5))
-        middle = nodes[i] + 0.5 * length * frames[i, :, 0]
-        ax.plot(*_seen(origin, np.array([middle, masses[i]])).T, color=BLACK, linewidth=0.8, zorder=3)
-    _frame(ax, origin, np.zeros(3), np.eye(3), 0.27 * beam.length_m, (BLACK,) * 3, ("$x$", "$y$", "$z$"))
-
-    k = 3
-    mass = _seen(origin, masses[k])
-    arrow(ax, pair(origin), pair(mass), POSITION)
-    above, below = np.array([[-0.36, 0.22], [0.07, -0.2]]) * beam.length_m
-    _note(ax, rf"$r_{k + 1}(q)$, position of mass {k + 1} (eq. 1)", 0.5 * (origin + mass), above, POSITION)
-    _note(
-        ax,
-        "offset of the\ncentre of gravity",
-        _seen(origin, 0.5 * (masses[k - 1] + 0.5 * (nodes[k - 1] + nodes[k]))),
-        below,
-        BLACK,
+    """The frames of eq. 1: G at the clamp, U_i and D_i of one element, and the position of its point P."""
+    beam = _few_elements(structure, ("in_plane", "out_of_plane", "torsion")).model_copy(
+        update={"length_m": 1.0}
     )
+    q = np.deg2rad(np.repeat([2.0, 12.0, -5.0], DRAWN_ELEMENTS))
+    straight, deformed = node_positions(beam, 0.0 * q), node_positions(beam, q)
+    frames = element_frames(beam, q)
+    figure, ax = canvas(PAGE_IN * 0.78, 3.3, 1.42 / PAGE_IN / 0.78)
+    origin = np.array([0.24, 0.1])
+
+    half_chord, i = 0.08, FRAMED_ELEMENT - 1
+    for k in range(DRAWN_ELEMENTS):
+        _plate(ax, origin, straight[k : k + 2], half_chord * np.eye(3)[:, 1], "white", k == i)
+        _plate(ax, origin, deformed[k : k + 2], half_chord * frames[k][:, 1], "#E8E8E8", k == i)
+
+    point = deformed[i] + 0.62 / DRAWN_ELEMENTS * frames[i][:, 0] - 0.6 * half_chord * frames[i][:, 1]
+    for at, axes, size, colour, name in (
+        (np.zeros(3), np.eye(3), 0.19, BLACK, "G"),
+        (straight[i], np.eye(3), 0.14, BLUE, "U_i"),
+        (deformed[i], frames[i], 0.14, VERMILION, "D_i"),
+    ):
+        texts = [f"${axis}_{{{name}}}$" for axis in "xyz"]
+        _frame(ax, origin, at, axes, size, colour, texts)
+    for text, at, offset, colour in (
+        ("$G$: inertial,\nat the clamp", np.zeros(3), (-0.21, -0.05), BLACK),
+        ("$U_i$: undeformed,\ninertial", straight[i], (0.03, -0.1), BLUE),
+        ("$D_i$: deformed", deformed[i], (0.13, -0.06), VERMILION),
+    ):
+        _note(ax, text, _seen(origin, at), np.array(offset), colour)
+
+    end = _seen(origin, point)
+    for start, text, share, gap in (
+        (np.zeros(3), "$\\mathbf{r}_{P,i}$", 0.62, (-0.02, 0.035)),
+        (deformed[i], "$\\mathbf{r}_{P,i,D_i}$", 0.7, (0.065, -0.015)),
+    ):
+        tail = _seen(origin, start)
+        arrow(ax, pair(tail), pair(end), POSITION)
+        ax.text(
+            *pair(tail + share * (end - tail) + np.array(gap)), text, ha="center", va="center", color=POSITION
+        )
+    ax.add_patch(Circle(pair(end), 0.009, facecolor=BLACK, zorder=5))
+    ax.text(end[0] + 0.02, end[1] - 0.025, "$P$", ha="center", va="center")
     return figure
+
+
+def _plate(ax: Axes, origin: Array, ends: Array, half_chord: Array, fill: str, framed: bool) -> None:
+    """One element, from `ends` (2, 3), with its chord; its outline is dark if its frames are drawn."""
+    corners = np.array(
+        [ends[0] - half_chord, ends[1] - half_chord, ends[1] + half_chord, ends[0] + half_chord]
+    )
+    plate = Polygon(
+        _seen(origin, corners),
+        facecolor=fill,
+        edgecolor="#555555" if framed else "#B0B0B0",
+        linewidth=1.0 if framed else 0.6,
+        zorder=1.2 if framed else 1.0,
+    )
+    ax.add_patch(plate)
 
 
 def _few_elements(structure: Structure, joints: tuple[str, ...]) -> Structure:
@@ -182,7 +198,7 @@ def _spiral_spring(ax: Axes, at: Array, radius: float) -> None:
 
 
 def _turn(ax: Axes, at: Array, before: Array, angle: float, radius: float, number: int) -> None:
-    """The angle of a joint: from the direction of the element before it to its own."""
+    """The coordinate of a joint: from the direction of the element before it to its own."""
     start = np.arctan2(before[1], before[0])
     end = at + radius * np.array([np.cos(start), np.sin(start)])
     ax.plot((at[0], end[0]), (at[1], end[1]), color=GREY, linewidth=0.6, linestyle=(0, (3, 2)), zorder=1)
@@ -197,7 +213,7 @@ def _turn(ax: Axes, at: Array, before: Array, angle: float, radius: float, numbe
     ax.add_patch(arc)
     text = at + 0.86 * radius * np.array([np.cos(start), np.sin(start)])
     text += 0.2 * radius * np.array([np.sin(start), -np.cos(start)])
-    ax.text(text[0], text[1], rf"$\theta_{number}$", ha="center", va="center")
+    ax.text(text[0], text[1], f"$q_{number}$", ha="center", va="center")
 
 
 def _dimension(ax: Axes, start: Array, end: Array, distance: float, text: str) -> None:
@@ -223,25 +239,15 @@ def _seen(origin: Array, points: Array) -> Array:
 
 
 def _frame(
-    ax: Axes,
-    origin: Array,
-    at: Array,
-    axes: Array,
-    size: float,
-    colours: Sequence[str],
-    names: Sequence[str],
+    ax: Axes, origin: Array, at: Array, axes: Array, size: float, colour: str, names: Sequence[str]
 ) -> None:
-    """The axes (3, 3), columns, as arrows from `at`, with `names` at their ends if there are any."""
-    for column, colour in enumerate(colours):
+    """The axes (3, 3), columns, as arrows from `at`, with `names` at their ends."""
+    for column, name in enumerate(names):
         end = _seen(origin, at + size * axes[:, column])
         arrow(ax, pair(_seen(origin, at)), pair(end), colour)
-    for column, name in enumerate(names):
-        direction = _seen(np.zeros(2), axes[:, column])
-        along = direction / np.linalg.norm(direction)
-        # x lies on the elastic axis: its name stands beside the line
-        gap = 0.045 * (np.array([along[1], -along[0]]) if column == 0 and axes[2, 0] > 0.0 else along)
-        text = _seen(origin, at + size * axes[:, column]) + gap
-        ax.text(*pair(text), name, ha="center", va="center", color=colours[column])
+        along = _seen(np.zeros(2), axes[:, column])
+        text = end + 0.035 * along / np.linalg.norm(along)
+        ax.text(*pair(text), name, ha="center", va="center", color=colour)
 
 
 def _note(ax: Axes, text: str, at: Array, offset: Array, colour: str) -> None:

@@ -103,7 +103,7 @@ def figure_11() -> Figure:
         ax,
         (2.05, lower),
         (1.45, 0.62),
-        "kinematics (eq. 1)\n" + r"$J(\eta) = \partial r_{\mathrm{tip}}/\partial\eta$",
+        "kinematics (eq. 1)\n" + r"$J(\eta) = \partial \mathbf{r}/\partial\eta$",
         ORANGE,
         PALE_ORANGE,
     )
@@ -120,7 +120,7 @@ def figure_11() -> Figure:
     ax.text(4.55, upper + 0.11, r"$\dot\eta,\ \dot p_{\mathrm{free}}$", ha="center")
     path(ax, ((4.775, lower), (join, lower), (join, upper - 0.14)))
     ax.text(join + 0.07, 1.05, r"$Q$, added to $\dot p$", ha="left", va="center")
-    ax.text(4.05, 0.07, r"$F(t)$: tip force", ha="center", va="center")
+    ax.text(4.05, 0.07, r"$F(t)$: load", ha="center", va="center")
     arrow(ax, (4.05, 0.14), (4.05, 0.29))
     arrow(ax, (join + 0.14, upper), (out + 0.075, upper))
     path(ax, ((out + 0.5, upper + 0.25), (out + 0.5, 2.02), (state, 2.02), (state, 1.52)))

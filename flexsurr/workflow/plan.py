@@ -25,6 +25,7 @@ from flexsurr.training.sweep import expand, run_id
 Job = dict[str, Any]
 
 RESPONSE_KINDS = ("free", "forced")
+DRAWN_RESPONSES = (*RESPONSE_KINDS, "sustained")
 
 # What the trajectories of a dataset depend on, apart from the structure, the variant and their numbers.
 DATASET = (
@@ -233,7 +234,7 @@ class Plan:
             return [f"runs/{key}/{runs[read]}" for key in self.runs_of(study)]
         variants = self.variants(study)
         names = ["statics", "frequencies", "validation"]
-        names += [f"response-{variant}-{response}" for variant in variants for response in RESPONSE_KINDS]
+        names += [f"response-{variant}-{response}" for variant in variants for response in DRAWN_RESPONSES]
         names += [f"{kind}-{variant}" for kind in ("energy", "learned_loads") for variant in variants]
         names += [f"cost-{variant}-{response}" for variant in variants for response in RESPONSE_KINDS]
         found = [f"evaluation/{study}/{name}.parquet" for name in names if fnmatch(name, read)]

@@ -16,6 +16,13 @@ def test_a_surrogate_equal_to_the_reference_follows_it(response, study, basis, f
     assert list(table.columns) == list(RESPONSE_COLUMNS)
 
 
+def test_a_sustained_load_acts_as_long_as_it_may(study, basis, fitted):
+    table = response_table(study, basis, "hamiltonian", "sustained", {"polynomial": fitted})
+    assert set(table["load_end_s"]) == {study.evaluation.longest_load_s}
+    assert table.groupby("model")["tip_z_m"].apply(lambda z: z.abs().max()).gt(0.01).all()
+    assert table["tip_error_percent"].max() < 1e-3
+
+
 def test_the_force_moves_the_tip_from_rest(study, basis, fitted):
     table = response_table(study, basis, "hamiltonian", "forced", {"polynomial": fitted})
     polynomial = table[table["model"] == "polynomial"]

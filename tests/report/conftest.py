@@ -67,7 +67,8 @@ def make_response(response: str, variants: tuple[str, ...] = VARIANTS) -> pd.Dat
                         "response": response,
                         "model": model,
                         "t_s": shown,
-                        "tip_x_m": 1.0,
+                        "tip_x_m": 0.9 + 0.05 * np.sin(100.0 * shown),
+                        "tip_y_m": 0.01 * np.sin(50.0 * shown),
                         "tip_z_m": 0.4 * np.sin(50.0 * shown + 1e-3 * k * shown),
                         "tip_twist_rad": 0.1 * np.cos(50.0 * shown + 1e-3 * k * shown),
                         "tip_error_percent": 10.0**-k * shown,
@@ -89,6 +90,11 @@ def forced() -> pd.DataFrame:
 
 
 @pytest.fixture
+def sustained() -> pd.DataFrame:
+    return make_response("sustained").assign(load_end_s=5.0)
+
+
+@pytest.fixture
 def energy() -> pd.DataFrame:
     t = np.linspace(0.0, 8.0, 161)
     setups = [("models", model, "gauss_legendre_6(h=0.0025)") for model in ("rom", *MODELS)]
@@ -102,14 +108,17 @@ def energy() -> pd.DataFrame:
                 {
                     "panel": panel,
                     "variant": variant,
+                    "response": response,
                     "model": model,
                     "integrator": integrator,
                     "t_s": t,
                     "energy_J": 5.0 + 10.0**-k * t,
                     "drift_percent": 20.0 * 10.0**-k * t,
+                    "load_end_s": 3.0 if response == "forced" else 0.0,
                 }
             )
             for variant in VARIANTS
+            for response in ("free", "forced")
             for k, (panel, model, integrator) in enumerate(setups)
         ],
         ignore_index=True,

@@ -3,6 +3,7 @@
 import re
 
 import matplotlib
+import pandas as pd
 import pytest
 from matplotlib.figure import Figure
 
@@ -18,6 +19,7 @@ FIXTURES = {
     "validation": "validation",
     "response-*-free": "free",
     "response-*-forced": "forced",
+    "response-*-sustained": "sustained",
     "energy-*": "energy",
     "cost-*-*": "cost",
     "metrics": "metrics",
@@ -33,9 +35,13 @@ SCHEMATIC = ("figure_03", "figure_04", "figure_05", "figure_06", "figure_07", "f
 DRAWN: dict[str, Figure] = {}
 
 
-def draw(name, request):
+def read_by(name, request):
     fixtures = [OF_DAMPED.get(name, FIXTURES[read]) for read in FIGURES[name].reads]
-    return DRAW[name](*map(request.getfixturevalue, fixtures))
+    return [request.getfixturevalue(fixture) for fixture in fixtures]
+
+
+def draw(name, request):
+    return DRAW[name](*read_by(name, request))
 
 
 @pytest.fixture
@@ -91,13 +97,17 @@ def test_the_callers_settings_neither_matter_nor_change(request):
     assert figure.axes[0].xaxis.label.get_size() < 10.0
 
 
-RESPONSES = ["figure_09", "figure_10", "figure_12", "figure_13", "figure_14", "figure_15", "energy_decay"]
+OF_VARIANTS = [
+    name
+    for name, product in FIGURES.items()
+    if product.reads and product.reads[-1].split("-")[0] in ("validation", "response", "energy", "cost")
+]
 
 
-@pytest.mark.parametrize("name", [*RESPONSES, "cost_accuracy", "architecture_errors"])
+@pytest.mark.parametrize("name", [*OF_VARIANTS, "architecture_errors"])
 def test_a_study_of_one_variant_is_drawn_too(name, request):
-    frame = request.getfixturevalue(OF_DAMPED.get(name, FIXTURES[FIGURES[name].reads[0]]))
-    figure = DRAW[name](frame[frame["variant"] == "as_printed"])
+    *others, frame = read_by(name, request)
+    figure = DRAW[name](*others, frame[frame["variant"] == "as_printed"])
     assert all(ax.has_data() for ax in figure.axes)
 
 
@@ -119,9 +129,66 @@ def test_what_only_damped_structures_have_is_drawn_of_them_alone(structure):
         name: [figure.shows(beam) for beam in (structure, damped, undamped_in_torsion)]
         for name, figure in FIGURES.items()
     }
-    assert made["figure_08"] == [True, True, True]
-    assert made["figure_10"] == made["figure_13"] == [True, False, True]
-    assert made["figure_14"] == made["energy_decay"] == [False, True, False]
+    assert made["static_deflection"] == made["free_response_of_every_model"] == [True, True, True]
+    assert made["energy_drift"] == [True, False, True]
+    assert made["energy_decay"] == [False, True, False]
+
+
+def test_numbers_are_those_of_the_papers_structures_alone(structure):
+    def numbered(name):
+        beam = structure.model_copy(update={"name": name})
+        shown = {figure for figure, product in FIGURES.items() if product.shows(beam)}
+        return {int(figure.removeprefix("figure_")) for figure in shown if figure.startswith("figure_")}
+
+    results = {8, 9, 10, 12, 13, 14, 15}
+    assert numbered("cantilever") & results == {8, 9, 10, 12, 13}
+    assert numbered("wing") & results == {14, 15}
+    assert not numbered("rod") & results
+
+
+def names_in(figure):
+    return [text.get_text() for text in figure.legends[0].get_texts()]
+
+
+@pytest.mark.parametrize(
+    ("name", "networks"),
+    [(name, ["HNN", "MLP"]) for name in ("figure_10", "figure_12", "figure_13")]
+    + [(name, ["D-HNN", "MLP"]) for name in ("figure_14", "figure_15")],
+)
+def test_the_papers_curves_are_drawn_and_its_own_networks_where_there_are_any(name, networks, request):
+    (frame,) = read_by(name, request)
+    frame["model"] = frame["model"].replace({"polynomial": "dissipative_hnn"})
+    own = frame[frame["model"] == "mlp"].assign(model="mlp_paper")
+    for shown, mlp in ((frame, "MLP"), (pd.concat([frame, own]), "MLP (paper)")):
+        found = set(names_in(DRAW[name](shown))) - {"load acts"}
+        assert found == {"reduced order", networks[0], mlp}
+
+
+def span(ax):
+    """The longest line's first and last abscissa."""
+    return ax.dataLim.x0, ax.dataLim.x1
+
+
+@pytest.mark.parametrize(("name", "panels"), [("figure_09", 4), ("figure_10", 4), ("figure_12", 4)])
+def test_the_cantilevers_windows_are_the_papers(name, panels, request):
+    (frame,) = read_by(name, request)
+    figure = DRAW[name](frame)
+    longest_s = min(2.0, frame["t_s"].max())
+    assert [span(ax) for ax in figure.axes] == [pytest.approx((0.0, longest_s))] * panels
+
+
+@pytest.mark.parametrize("name", ["figure_14", "figure_15"])
+def test_the_wings_panels_are_position_and_twist(name, request):
+    figure = draw(name, request)
+    labels = [ax.get_ylabel() for ax in figure.axes if ax.get_subplotspec().is_first_col()]
+    assert labels == ["tip x [m]", "tip y [m]", "tip z [m]", "tip twist [deg]"]
+
+
+@pytest.mark.parametrize("name", ["figure_12", "figure_13", "figure_15"])
+def test_where_the_load_acts_is_shaded(name, request):
+    figure = draw(name, request)
+    assert "load acts" in names_in(figure)
+    assert all(ax.patches for ax in figure.axes)
 
 
 def test_a_model_that_leaves_does_not_set_the_scale(request):

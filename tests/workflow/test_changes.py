@@ -31,7 +31,7 @@ def products_of(*reads: str) -> dict[str, int]:
 
 RUNS = ("metrics", "relatives", "history")
 COSTS = ("cost-*-*",)
-RESPONSES = ("response-*-free", "response-*-forced", "energy-*")
+RESPONSES = ("response-*-free", "response-*-forced", "response-*-sustained", "energy-*")
 SELECTED = {"select": 1, "responses": 2, "evaluate": 4, **products_of(*RUNS, *COSTS, *RESPONSES)}
 FLOWN = {
     "select_coefficients": 1,

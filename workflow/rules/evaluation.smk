@@ -7,6 +7,7 @@ rule responses:
     output:
         free=f"{RESULTS}/evaluation/{{study}}/response-{{variant}}-free.parquet",
         forced=f"{RESULTS}/evaluation/{{study}}/response-{{variant}}-forced.parquet",
+        sustained=f"{RESULTS}/evaluation/{{study}}/response-{{variant}}-sustained.parquet",
         energy=f"{RESULTS}/evaluation/{{study}}/energy-{{variant}}.parquet",
     log:
         f"{RESULTS}/logs/responses/{{study}}-{{variant}}.log",
@@ -25,7 +26,7 @@ rule responses:
     shell:
         "python -m flexsurr.cli.respond --job {params.job:q} --selection {input.selection:q}"
         " --runs {params.runs:q} --free {output.free:q} --forced {output.forced:q}"
-        " --energy {output.energy:q} > {log:q} 2>&1"
+        " --sustained {output.sustained:q} --energy {output.energy:q} > {log:q} 2>&1"
 
 
 rule learn_load:
