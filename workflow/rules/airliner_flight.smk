@@ -137,7 +137,8 @@ rule show_airliner:
         runtime=30,
     params:
         job=lambda w: write(
-            "pages/airliner", {"titles": [table.title for table in AIRLINER_TABLES.values()]}
+            "pages/airliner",
+            {"titles": [table.title for table in AIRLINER_TABLES.values()]},
         ),
         code=code("pages"),
         folder=f"{RESULTS}/tables/airliner",
