@@ -7,15 +7,17 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from flexsurr.report.style import LOADED, VARIANTS, colour, dashes, label
+from flexsurr.report.style import LOADED, VARIANTS, colour, dashes, family, label
 
 PAPERS_SWEEP = "paper"
 """A sweep of this name holds the paper's own recipe; its networks have the name added to their own."""
 
-SHOWN_BEYOND = 0.35
+SHOWN_BEYOND = 0.25
 """How far beyond the reference's range the axes go, as a share of it: a model that leaves it is cut off."""
 
 TRUTHS = ("reference", "rom")
+
+PAPERS_LINES = ("-", (0, (3.0, 2.0)))
 
 
 def variants_in(frame: pd.DataFrame) -> list[str]:
@@ -53,6 +55,25 @@ def curve(ax: Axes, t: pd.Series, values: pd.Series, model: str) -> None:
         label=label(model),
         zorder=2 if truth else 3,
     )
+
+
+def papers_curves(ax: Axes, shown: pd.DataFrame, quantity: str) -> None:
+    """A column of `the_papers` rows against time: the first network solid, the second dashed on top of it."""
+    networks = 0
+    for model, part in each(shown):
+        if model in TRUTHS:
+            curve(ax, part["t_s"], part[quantity], model)
+            continue
+        ax.plot(
+            part["t_s"],
+            part[quantity],
+            color=colour(family(model)),
+            linestyle=PAPERS_LINES[networks],
+            linewidth=1.0,
+            label=label(model),
+            zorder=3 + networks,
+        )
+        networks += 1
 
 
 def follow_reference(ax: Axes, values: pd.Series) -> None:

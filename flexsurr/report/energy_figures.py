@@ -5,7 +5,16 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from flexsurr.report.curves import curve, each, follow_reference, legend, shade, the_papers, variants_in
+from flexsurr.report.curves import (
+    curve,
+    each,
+    follow_reference,
+    legend,
+    papers_curves,
+    shade,
+    the_papers,
+    variants_in,
+)
 from flexsurr.report.integrators import integrator_colour, integrator_name
 from flexsurr.report.style import (
     PAGE_IN,
@@ -42,10 +51,10 @@ def figure_13(energy: pd.DataFrame) -> Figure:
     axes = figure.subplots(len(variants), 1, sharex=True, squeeze=False)[:, 0]
     for ax, variant in zip(axes, variants, strict=True):
         shown = the_papers(forced[forced["variant"] == variant], ("mlp", "hnn"))
-        for model, part in each(shown):
-            curve(ax, part["t_s"], part["energy_J"], model)
+        papers_curves(ax, shown, "energy_J")
         shade(ax, float(shown["load_end_s"].max()))
         follow_reference(ax, shown.loc[shown["model"] == "rom", "energy_J"])
+        ax.set_ylim(bottom=0.0)
         ax.set_ylabel("energy [J]")
         ax.margins(x=0.0)
         ax.set_title(VARIANTS[variant], loc="left")

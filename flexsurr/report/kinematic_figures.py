@@ -130,7 +130,7 @@ def figure_04(structure: Structure) -> Figure:
     end = _seen(origin, point)
     for start, text, share, gap in (
         (np.zeros(3), "$\\mathbf{r}_{P,i}$", 0.62, (-0.02, 0.035)),
-        (deformed[i], "$\\mathbf{r}_{P,i,D_i}$", 0.7, (0.065, -0.015)),
+        (deformed[i], "$\\mathbf{r}_{P,i,D_i}$", 0.6, (0.07, -0.015)),
     ):
         tail = _seen(origin, start)
         arrow(ax, pair(tail), pair(end), POSITION)
@@ -138,7 +138,7 @@ def figure_04(structure: Structure) -> Figure:
             *pair(tail + share * (end - tail) + np.array(gap)), text, ha="center", va="center", color=POSITION
         )
     ax.add_patch(Circle(pair(end), 0.009, facecolor=BLACK, zorder=5))
-    ax.text(end[0] + 0.02, end[1] - 0.025, "$P$", ha="center", va="center")
+    ax.text(end[0] + 0.028, end[1], "$P$", ha="center", va="center")
     return figure
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from flexsurr.report.curves import curve, each, follow_reference, legend, shade, the_papers, variants_in
+from flexsurr.report.curves import follow_reference, legend, papers_curves, shade, the_papers, variants_in
 from flexsurr.report.style import PAGE_IN, VARIANTS, letter, new_figure, styled
 
 CANTILEVER_S = 2.0
@@ -63,8 +63,7 @@ def _histories(
         shown = the_papers(response[response["variant"] == variant], architectures)
         load_end_s = min(float(shown["load_end_s"].max()), float(shown["t_s"].max()))
         for ax, quantity in zip(column, quantities, strict=True):
-            for model, part in each(shown):
-                curve(ax, part["t_s"], part[quantity], model)
+            papers_curves(ax, shown, quantity)
             shade(ax, load_end_s)
             ax.margins(x=0.0)
         column[0].set_title(VARIANTS[variant], loc="left")
