@@ -1,4 +1,4 @@
-"""Mean, variance and largest size of columns, gathered block by block in constant memory."""
+"""Mean, variance and range of columns, gathered block by block in constant memory."""
 
 from dataclasses import dataclass
 
@@ -10,22 +10,23 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Moments:
-    """Of columns (d,): number of rows, mean, sum of squared deviations from it, largest magnitude."""
+    """Of columns (d,): number of rows, mean, sum of squared deviations from it, least and largest."""
 
     rows: int
     mean: Array
     squares: Array
-    largest: Array
+    low: Array
+    high: Array
 
     @classmethod
     def of(cls, values: Array) -> "Moments":
         """The moments of one block `values` (m, d)."""
         if not len(values):
             zero = np.zeros(values.shape[1])
-            return cls(0, zero, zero, zero)
+            return cls(0, zero, zero, zero + np.inf, zero - np.inf)
         mean = values.mean(axis=0)
         squares = np.square(values - mean).sum(axis=0)
-        return cls(len(values), mean, squares, np.abs(values).max(axis=0))
+        return cls(len(values), mean, squares, values.min(axis=0), values.max(axis=0))
 
     def joined(self, other: "Moments") -> "Moments":
         """The moments of both blocks together (Chan, Golub & LeVeque 1983, eq. 1.5)."""
@@ -35,7 +36,8 @@ class Moments:
         difference = other.mean - self.mean
         mean = self.mean + difference * (other.rows / rows)
         squares = self.squares + other.squares + np.square(difference) * (self.rows * other.rows / rows)
-        return Moments(rows, mean, squares, np.maximum(self.largest, other.largest))
+        low, high = np.minimum(self.low, other.low), np.maximum(self.high, other.high)
+        return Moments(rows, mean, squares, low, high)
 
     @property
     def variance(self) -> Array:

@@ -9,11 +9,12 @@ from flexsurr.storage.moments import Array, Moments
 
 @dataclass(frozen=True)
 class Scales:
-    """Of samples, in the order x, then dx (2d,): mean, standard deviation, largest size."""
+    """Of samples, in the order x, then dx (2d,): mean, standard deviation, least and largest value."""
 
     mean: tuple[float, ...]
     standard_deviation: tuple[float, ...]
-    largest: tuple[float, ...]
+    low: tuple[float, ...]
+    high: tuple[float, ...]
 
     @classmethod
     def of(cls, x: Array, dx: Array) -> "Scales":
@@ -26,8 +27,14 @@ class Scales:
         return cls(
             tuple(moments.mean.tolist()),
             tuple(np.sqrt(moments.variance).tolist()),
-            tuple(moments.largest.tolist()),
+            tuple(moments.low.tolist()),
+            tuple(moments.high.tolist()),
         )
+
+    @property
+    def largest(self) -> Array:
+        """The largest size (2d,)."""
+        return np.maximum(np.abs(self.low), np.abs(self.high))
 
     @property
     def root_mean_square(self) -> Array:

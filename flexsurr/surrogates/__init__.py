@@ -21,6 +21,7 @@ from flexsurr.surrogates.scaling import (
     StateScaling,
     canonical_scaling,
     feature_scaling,
+    min_max_scaling,
     pair_scaling,
 )
 from flexsurr.surrogates.surrogate import Hamiltonian, Surrogate
@@ -53,6 +54,7 @@ __all__ = [
     "load",
     "load_map",
     "load_model",
+    "min_max_scaling",
     "pair_scaling",
     "save",
     "save_map",

@@ -6,37 +6,26 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 
 from flexsurr.simulation.rhs import Array, implements_rhs
-from flexsurr.surrogates.activations import slope, value
-from flexsurr.surrogates.layers import back, forward, offset
-from flexsurr.surrogates.scalar_heads import ScalarHeads
+from flexsurr.surrogates.activations import slope
+from flexsurr.surrogates.layers import offset
+from flexsurr.surrogates.scalar_networks import ScalarNetworks, gradient_of_scalar
 from flexsurr.surrogates.scaled_kernel import scaled_kernel
 from flexsurr.surrogates.scaling import FeatureScaling
 from flexsurr.surrogates.surrogate import symplectic
 
 
 @dataclass(frozen=True, eq=False)
-class HNN(ScalarHeads):
+class HNN(ScalarNetworks):
     """q̇ = ∂H/∂p, ṗ = −∂H/∂q with H = Σ c σ(… σ(W₁ x + b₁) …): eq. 2 without load or dissipation.
 
     The scaled field is Hamiltonian; that in the units of the states is so if the scaling is canonical.
     """
 
     architecture: ClassVar[str] = "hnn"
-    heads: ClassVar[int] = 1
-
-    def scaled_energy(self, x: Array) -> Array:
-        """Ĥ of scaled states, (..., 2r) -> (...)."""
-        return self.scaled_scalar(x, 0)
 
     def scaled_field(self, x: Array) -> Array:
         """Hamilton's equations of Ĥ."""
-        return symplectic(*self.scaled_gradients(x))
-
-    def energy(self, x: Array) -> Array:
-        """H(x) − H(0), (..., 2r) -> (...), in the product of the units of q and p per second."""
-        states = self.scaling.states(len(self.state_names))
-        difference = self.scaled_energy(x / states) - self.scaled_energy(np.zeros_like(states))
-        return self.scaling.energy * difference
+        return symplectic(self.scaled_gradient(x, 0))
 
     def scaled_kernel(self, parameters: Array) -> "HNNKernel":
         """The scaled field with these weights, for compiled code."""
@@ -90,40 +79,12 @@ class HNNKernel(NamedTuple):
     activation: NamedTuple
     widths: tuple[int, ...]
     parameters: Array
+    networks: int = 1
 
 
 @implements_rhs(HNNKernel, inline=False)
 def _hnn(kernel, t, x, dx, work):
-    activation, widths, parameters = kernel
-    last = len(widths) - 1
-    # work: the inputs, then for each layer the arguments and the values of σ
-    for j in range(x.size):
-        work[j] = x[j]
-    values = offset(0)
-    weights = offset(0)
-    for layer in range(1, last + 1):
-        n = offset(widths[layer - 1])
-        m = offset(widths[layer])
-        z = values + n
-        forward(parameters, weights, n, m, work, values, z)
-        values = z + m
-        weights += n * m + m
-        if layer < last:
-            for k in range(m):
-                work[values + k] = value(activation, work[z + k])
-    m = offset(widths[last])
-    for k in range(m):
-        work[values + k] = parameters[weights + k]
-    # back: the derivatives of H by each layer's values, then by its arguments, in their places
-    for layer in range(last, 0, -1):
-        n = offset(widths[layer - 1])
-        m = offset(widths[layer])
-        z = values - m
-        for k in range(m):
-            work[z + k] = work[values + k] * slope(activation, work[z + k])
-        values = z - n
-        weights -= n * m + m
-        back(parameters, weights, n, m, work, z, values)
+    gradient_of_scalar(kernel.activation, kernel.widths, kernel.parameters, offset(0), x, work)
     r = x.size // 2
     for j in range(r):
         dx[j] = work[r + j]

@@ -9,6 +9,7 @@ from flexsurr.simulation.rhs import Array, implements_rhs
 from flexsurr.surrogates.activations import value
 from flexsurr.surrogates.layers import forward, offset
 from flexsurr.surrogates.network import Network
+from flexsurr.surrogates.scaling import origins
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,10 +37,12 @@ class MLP(Network):
     def kernel(self) -> tuple[NamedTuple, int]:
         """A single loop for one hidden layer over one pair (q, p), else layer by layer."""
         count = len(self.state_names)
-        inner, *others, weights_out, biases_out = self.arrays()
+        x_from, dx_from = origins(self.scaling, count)
+        inner, biases, *others, weights_out, biases_out = self.arrays()
         inner = inner / self.scaling.states(count)[:, None]
+        others = [biases - x_from @ inner, *others]
         weights_out = weights_out * self.scaling.rates(count)
-        biases_out = biases_out * self.scaling.rates(count)
+        biases_out = biases_out * self.scaling.rates(count) + dx_from
         if self.widths == (2, self.hidden[0]):
             vectors = inner[0], inner[1], others[0], weights_out[:, 0], weights_out[:, 1], biases_out
             return PhasePlaneMLP(self.sigma.tag, *(vector.copy() for vector in vectors)), 0
@@ -79,11 +82,12 @@ class MLPKernel(NamedTuple):
     activation: NamedTuple
     widths: tuple[int, ...]
     parameters: Array
+    networks: int = 1
 
 
 @implements_rhs(MLPKernel, inline=False)
 def _mlp(kernel, t, x, dx, work):
-    activation, widths, parameters = kernel
+    activation, widths, parameters, _ = kernel
     # work: the inputs, then each layer's values, then the outputs
     for j in range(x.size):
         work[j] = x[j]

@@ -3,7 +3,7 @@
 import math
 from abc import abstractmethod
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -14,15 +14,17 @@ from flexsurr.surrogates.surrogate import Surrogate
 
 @dataclass(frozen=True, eq=False)
 class Network(Surrogate):
-    """A network with one or more hidden layers of the given widths.
+    """One network, or several of the same shape, with one or more hidden layers of the given widths.
 
-    The vector of parameters holds, layer by layer, the weights (from, to) and the biases (to,); then
-    what reads the last layer out. Inputs come first so that a loop over neurons runs through
-    neighbouring numbers.
+    The vector of parameters holds, network by network and layer by layer, the weights (from, to) and the
+    biases (to,); then what reads the last layer out. Inputs come first so that a loop over neurons runs
+    through neighbouring numbers.
     """
 
     hidden: tuple[int, ...]
     activation: str
+
+    networks: ClassVar[int] = 1
 
     def __post_init__(self) -> None:
         if not self.hidden or min(self.hidden) < 1:
@@ -42,7 +44,8 @@ class Network(Surrogate):
     def shapes(cls, states: int, hidden: tuple[int, ...]) -> list[tuple[int, ...]]:
         """Shapes of the arrays in `parameters`, in their order."""
         layers = zip((states, *hidden), hidden, strict=False)
-        return [shape for n, m in layers for shape in ((n, m), (m,))] + cls.readout_shapes(states, hidden[-1])
+        network = [shape for n, m in layers for shape in ((n, m), (m,))]
+        return (network + cls.readout_shapes(states, hidden[-1])) * cls.networks
 
     @classmethod
     @abstractmethod
@@ -68,6 +71,12 @@ class Network(Surrogate):
         shapes = self.shapes(len(self.state_names), self.hidden)
         pieces = np.split(self.parameters, np.cumsum([math.prod(shape) for shape in shapes[:-1]]))
         return [piece.reshape(shape) for piece, shape in zip(pieces, shapes, strict=True)]
+
+    def network_arrays(self, number: int) -> list[Array]:
+        """Those of one of the networks."""
+        arrays = self.arrays()
+        count = len(arrays) // self.networks
+        return arrays[number * count : (number + 1) * count]
 
     def settings(self) -> dict[str, Any]:
         """Hidden layers and activation."""

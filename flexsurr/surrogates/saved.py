@@ -68,7 +68,9 @@ def _scaling(values: dict[str, Any]) -> StateScaling:
     if "action" in values:
         return PairScaling(q=tuple(values["q"]), action=values["action"], energy=values["energy"])
     if "dx" in values:
-        return FeatureScaling(x=tuple(values["x"]), dx=tuple(values["dx"]))
+        return FeatureScaling(
+            **{name: each if each is None else tuple(each) for name, each in values.items()}
+        )
     return Scaling(**values)
 
 

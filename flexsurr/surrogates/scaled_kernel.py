@@ -5,15 +5,17 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from flexsurr.simulation.rhs import Array, implements_rhs, rhs
-from flexsurr.surrogates.scaling import StateScaling
+from flexsurr.surrogates.scaling import StateScaling, origins
 
 
 class ScaledKernel(NamedTuple):
-    """ẋ_i = rates_i f_i(x / s) for any kernel of f; both (d,)."""
+    """ẋ_i = rates_i f_i((x − x_from) / s) + dx_from_i for any kernel of f; all (d,)."""
 
     field: Any
     inverse_states: Array
     rates: Array
+    x_from: Array
+    dx_from: Array
 
 
 def scaled_kernel(
@@ -24,14 +26,16 @@ def scaled_kernel(
     For fields into whose weights the scales cannot be folded: those of gradients, unless the scaling is
     canonical and the gradient turned by Hamilton's equations.
     """
-    return ScaledKernel(field, 1.0 / scaling.states(count), np.array(scaling.rates(count))), work_size + count
+    rates = np.array(scaling.rates(count))
+    kernel = ScaledKernel(field, 1.0 / scaling.states(count), rates, *origins(scaling, count))
+    return kernel, work_size + count
 
 
 @implements_rhs(ScaledKernel, inline=False)
 def _scaled(kernel, t, x, dx, work):
     d = x.size
     for i in range(d):
-        work[i] = x[i] * kernel.inverse_states[i]
+        work[i] = (x[i] - kernel.x_from[i]) * kernel.inverse_states[i]
     rhs(kernel.field, t, work[:d], dx, work[d:])
     for i in range(d):
-        dx[i] *= kernel.rates[i]
+        dx[i] = dx[i] * kernel.rates[i] + kernel.dx_from[i]

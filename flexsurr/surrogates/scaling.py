@@ -75,16 +75,22 @@ class PairScaling:
 class FeatureScaling:
     """Each state and each rate by itself, `x` and `dx` (2r,): what a learning library does by default.
 
-    The scaled equations of a Hamiltonian system are not Hamiltonian.
+    Scaled states and rates may be counted from `x_from` and `dx_from` (2r,). The scaled equations of a
+    Hamiltonian system are not Hamiltonian.
     """
 
     x: tuple[float, ...]
     dx: tuple[float, ...]
+    x_from: tuple[float, ...] | None = None
+    dx_from: tuple[float, ...] | None = None
 
     def __post_init__(self) -> None:
         for name, values in (("x", self.x), ("dx", self.dx)):
             for k, value in enumerate(values):
                 _check_positive(f"{name}_{k + 1}", value)
+        for values in (self.x_from, self.dx_from):
+            if values is not None and (len(values) != len(self.x) or not np.all(np.isfinite(values))):
+                raise ValueError(f"scaled states and rates count from {len(self.x)} finite numbers each")
 
     @property
     def energy(self) -> float:
@@ -101,6 +107,34 @@ class FeatureScaling:
 
 
 StateScaling = Scaling | PairScaling | FeatureScaling
+
+
+def origins(scaling: StateScaling, count: int) -> tuple[Array, Array]:
+    """What the `count` scaled states and their scaled rates are counted from, (2r,) each, in their units."""
+    x_from = getattr(scaling, "x_from", None)
+    dx_from = getattr(scaling, "dx_from", None)
+    return (
+        np.zeros(count) if x_from is None else np.array(x_from),
+        np.zeros(count) if dx_from is None else np.array(dx_from),
+    )
+
+
+def scaled_states(scaling: StateScaling, x: Array) -> Array:
+    """Scaled states of the states `x` (..., 2r)."""
+    count = x.shape[-1]
+    return np.asarray((x - origins(scaling, count)[0]) / scaling.states(count))
+
+
+def scaled_rates(scaling: StateScaling, dx: Array) -> Array:
+    """Scaled rates of the rates `dx` (..., 2r)."""
+    count = dx.shape[-1]
+    return np.asarray((dx - origins(scaling, count)[1]) / scaling.rates(count))
+
+
+def rates_of(scaling: StateScaling, field: Array) -> Array:
+    """The rates (..., 2r) whose scaled rates are `field`."""
+    count = field.shape[-1]
+    return np.asarray(scaling.rates(count) * field + origins(scaling, count)[1])
 
 
 def canonical_scaling(scales: Scales) -> Scaling:
@@ -133,6 +167,14 @@ def feature_scaling(scales: Scales) -> FeatureScaling:
     deviations = scales.standard_deviation
     count = len(deviations) // 2
     return FeatureScaling(x=deviations[:count], dx=deviations[count:])
+
+
+def min_max_scaling(scales: Scales) -> FeatureScaling:
+    """0 to 1 from the least to the largest value of each state and rate; ValueError where one does not vary."""
+    low, spans = np.array(scales.low), np.subtract(scales.high, scales.low)
+    x_from, dx_from = (tuple(part.tolist()) for part in np.split(low, 2))
+    x, dx = (tuple(part.tolist()) for part in np.split(spans, 2))
+    return FeatureScaling(x=x, dx=dx, x_from=x_from, dx_from=dx_from)
 
 
 def _check_positive(name: str, value: float) -> None:

@@ -7,7 +7,7 @@ from typing import Any, ClassVar, NamedTuple, Protocol, runtime_checkable
 import numpy as np
 
 from flexsurr.simulation.rhs import Array
-from flexsurr.surrogates.scaling import StateScaling
+from flexsurr.surrogates.scaling import StateScaling, rates_of, scaled_states
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,8 +56,7 @@ class Surrogate(ABC):
 
     def derivative(self, t: float, x: Array) -> Array:
         """ẋ (..., 2r) at states `x` (..., 2r), in the units of the states per second."""
-        count = len(self.state_names)
-        return self.scaling.rates(count) * self.scaled_field(x / self.scaling.states(count))
+        return rates_of(self.scaling, self.scaled_field(scaled_states(self.scaling, x)))
 
 
 @runtime_checkable

@@ -20,7 +20,7 @@ from flexsurr.surrogates.dissipative_hnn import DissipativeHNNKernel
 from flexsurr.surrogates.hnn import HNNKernel
 from flexsurr.surrogates.layers import back, forward, offset
 from flexsurr.surrogates.mlp import MLPKernel
-from flexsurr.training.forward_pass import OPTIONS, VECTORS, ends
+from flexsurr.training.forward_pass import OPTIONS, VECTORS, ends, starts
 from flexsurr.training.scalar_gradients import accumulate_slope, scalar_gradient
 
 
@@ -37,7 +37,7 @@ def accumulate(kernel: Any, parameters: Array, v: Array, gradient: Array, work: 
 @njit(**OPTIONS)
 def hamiltonian_field(kernel, parameters, work, dx):
     """Hamilton's equations of the first scalar, into `dx`."""
-    h = scalar_gradient(kernel, parameters, offset(0), work)
+    h = scalar_gradient(kernel, parameters, 0, work)
     r = offset(dx.size // 2)
     for j in range(r):
         dx[j] = work[h + r + j]
@@ -51,7 +51,7 @@ def accumulate_hamiltonian(kernel, parameters, v, gradient, work):
     for j in range(r):
         work[r + r + j] = -v[r + j]
         work[r + r + r + j] = v[j]
-    accumulate_slope(kernel, parameters, offset(0), gradient, work)
+    accumulate_slope(kernel, parameters, 0, gradient, work)
 
 
 def _hnn_field(kernel, parameters, work, dx):
@@ -64,22 +64,23 @@ def _hnn_accumulate(kernel, parameters, v, gradient, work):
 
 def _dissipative_hnn_field(kernel, parameters, work, dx):
     hamiltonian_field(kernel, parameters, work, dx)
-    d = scalar_gradient(kernel, parameters, offset(1), work)
+    d = scalar_gradient(kernel, parameters, 1, work)
     for j in range(offset(dx.size)):
         dx[j] += work[d + j]
 
 
 def _dissipative_hnn_accumulate(kernel, parameters, v, gradient, work):
     accumulate_hamiltonian(kernel, parameters, v, gradient, work)
+    _, block = starts(kernel, 1, parameters, work)
     count = offset(v.size)
     for j in range(count):
-        work[count + j] = v[j]
-    accumulate_slope(kernel, parameters, offset(1), gradient, work)
+        work[block + count + j] = v[j]
+    accumulate_slope(kernel, parameters, 1, gradient, work)
 
 
 def _mlp_field(kernel, parameters, work, dx):
     widths = kernel.widths
-    block, layer, _, outputs = ends(widths)
+    block, layer, _, outputs = ends(widths, offset(0), offset(0))
     d = offset(dx.size)
     forward(parameters, layer, offset(widths[len(widths) - 1]), d, work, block, outputs)
     for i in range(d):
@@ -89,7 +90,7 @@ def _mlp_field(kernel, parameters, work, dx):
 def _mlp_accumulate(kernel, parameters, v, gradient, work):
     widths = kernel.widths
     last = len(widths) - 1
-    block, layer, adjoint, outputs = ends(widths)
+    block, layer, adjoint, outputs = ends(widths, offset(0), offset(0))
     n = offset(widths[last])
     d = offset(v.size)
     for i in range(d):

@@ -23,7 +23,8 @@ def initial_parameters(
     generator = np.random.default_rng(seed)
     shapes = form.shapes(states, hidden)
     pieces, inputs = [], states
-    for place, shape in enumerate(shapes):
+    for number, shape in enumerate(shapes):
+        place = number % (len(shapes) // form.networks)
         is_hidden = place < 2 * len(hidden)
         if len(shape) == 2 or not is_hidden:
             inputs = shape[0] if place else states

@@ -11,7 +11,8 @@ from torch import Tensor, nn
 
 from flexsurr.simulation.rhs import Array
 from flexsurr.surrogates import Network
-from flexsurr.surrogates.scalar_heads import ScalarHeads
+from flexsurr.surrogates.scalar_networks import ScalarNetworks
+from flexsurr.surrogates.scaling import rates_of, scaled_states
 
 ACTIVATIONS: dict[str, Callable[[Tensor], Tensor]] = {
     "elu": nn.functional.elu,
@@ -25,38 +26,48 @@ ACTIVATIONS: dict[str, Callable[[Tensor], Tensor]] = {
 }
 
 
-class TorchNetwork(nn.Module):
-    """A network of scaled states: its outputs, or the field made of the gradients of `scalars` of them.
+class Dense(nn.Module):
+    """Hidden layers, and a linear readout of the last one."""
 
-    No scalars: an MLP. One: H, an HNN. Two: H and the dissipation function, a D-HNN.
-    """
-
-    def __init__(self, widths: tuple[int, ...], activation: str, scalars: int, dtype: torch.dtype) -> None:
+    def __init__(self, widths: tuple[int, ...], outputs: int, bias: bool, activation: str) -> None:
         super().__init__()
-        pairs = itertools.pairwise(widths)
-        self.hidden = nn.ModuleList(nn.Linear(n, m, dtype=dtype) for n, m in pairs)
-        outputs = scalars or widths[0]
-        self.readout = nn.Linear(widths[-1], outputs, bias=not scalars, dtype=dtype)
+        self.hidden = nn.ModuleList(nn.Linear(n, m) for n, m in itertools.pairwise(widths))
+        self.readout = nn.Linear(widths[-1], outputs, bias=bias)
         self.sigma = ACTIVATIONS[activation]
-        self.scalars = scalars
 
-    def output(self, x: Tensor) -> Tensor:
-        """The scalars (..., 1 or 2) or the field (..., 2r)."""
+    def forward(self, x: Tensor) -> Tensor:
+        """The outputs, (..., inputs) -> (..., outputs)."""
         for layer in self.hidden:
             x = self.sigma(layer(x))
         output: Tensor = self.readout(x)
         return output
 
+
+class TorchNetwork(nn.Module):
+    """A network of scaled states: its outputs, or the field made of the gradients of `scalars` networks.
+
+    No scalars: an MLP. One: H, an HNN. Two: H and the dissipation function, a D-HNN.
+    """
+
+    def __init__(self, widths: tuple[int, ...], activation: str, scalars: int) -> None:
+        super().__init__()
+        outputs = 1 if scalars else widths[0]
+        self.networks = nn.ModuleList(
+            Dense(widths, outputs, not scalars, activation) for _ in range(max(scalars, 1))
+        )
+        self.scalars = scalars
+
     def forward(self, x: Tensor) -> Tensor:
         """The scaled field, (..., 2r) -> (..., 2r)."""
         if not self.scalars:
-            return self.output(x)
+            field: Tensor = self.networks[0](x)
+            return field
         with torch.enable_grad():
             x = x if x.requires_grad else x.detach().requires_grad_()
-            hamiltonian, *dissipation = self.output(x).unbind(dim=-1)
-            by_q, by_p = self._gradient(hamiltonian, x).chunk(2, dim=-1)
+            hamiltonian, *dissipation = (self._gradient(network(x), x) for network in self.networks)
+            by_q, by_p = hamiltonian.chunk(2, dim=-1)
             field = torch.cat([by_p, -by_q], dim=-1)
-            return field + self._gradient(dissipation[0], x) if dissipation else field
+            return field + dissipation[0] if dissipation else field
 
     def _gradient(self, scalar: Tensor, x: Tensor) -> Tensor:
         (gradient,) = torch.autograd.grad(scalar.sum(), x, create_graph=self.training, retain_graph=True)
@@ -64,29 +75,19 @@ class TorchNetwork(nn.Module):
 
 
 def to_torch(network: Network, dtype: torch.dtype = torch.float64) -> TorchNetwork:
-    """The torch module with the weights of `network`."""
-    scalars = network.heads if isinstance(network, ScalarHeads) else 0
-    module = TorchNetwork(network.widths, network.activation, scalars, dtype)
+    """The torch module with the weights of `network`; torch has weights (to, from)."""
+    scalars = network.networks if isinstance(network, ScalarNetworks) else 0
+    module = TorchNetwork(network.widths, network.activation, scalars).to(dtype)
     with torch.no_grad():
-        for parameter, array in zip(module.parameters(), _as_torch(network, network.arrays()), strict=True):
-            parameter.copy_(torch.from_numpy(array.copy()))
+        for parameter, array in zip(module.parameters(), network.arrays(), strict=True):
+            parameter.copy_(torch.from_numpy(array.T.reshape(parameter.shape).copy()))
     return module
-
-
-def _as_torch(network: Network, arrays: list[Array]) -> list[Array]:
-    """The network's arrays as torch has them: weights (to, from), the readouts of all scalars in one."""
-    scalars = network.heads if isinstance(network, ScalarHeads) else 0
-    hidden, readouts = arrays[: len(arrays) - scalars], arrays[len(arrays) - scalars :]
-    return [array.T for array in hidden] + ([np.array(readouts)] if scalars else [])
 
 
 def from_torch(module: TorchNetwork, network: Network) -> Network:
     """`network` with the weights of the torch `module` of its shape in place of its own."""
-    arrays = [parameter.detach().double().numpy() for parameter in module.parameters()]
-    if module.scalars:
-        *arrays, readouts = arrays
-        arrays += list(readouts)
-    return replace(network, parameters=np.concatenate([np.ascontiguousarray(a.T).ravel() for a in arrays]))
+    arrays = [parameter.detach().double().numpy().T for parameter in module.parameters()]
+    return replace(network, parameters=np.concatenate([np.ascontiguousarray(a).ravel() for a in arrays]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,11 +110,9 @@ class TorchModel:
 
     def derivative(self, t: float, x: Array) -> Array:
         """ẋ (..., 2r) at states `x` (..., 2r), in the units of the states per second."""
-        scaling, count = self.surrogate.scaling, len(self.state_names)
-        scaled = torch.from_numpy(x / scaling.states(count)).to(self.module.readout.weight.dtype)
-        field = self.module(scaled).detach().double().numpy()
-        rates: Array = scaling.rates(count) * field
-        return rates
+        scaling = self.surrogate.scaling
+        scaled = torch.from_numpy(scaled_states(scaling, x)).to(next(self.module.parameters()).dtype)
+        return rates_of(scaling, self.module(scaled).detach().double().numpy())
 
 
 def torch_model(surrogate: Network, dtype: torch.dtype = torch.float64) -> TorchModel:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from flexsurr.simulation.rhs import Array
 from flexsurr.surrogates import Network
+from flexsurr.surrogates.scaling import scaled_rates, scaled_states
 from flexsurr.training.batches import fields, loss_and_gradient, residuals_and_jacobian
 from flexsurr.training.forward_pass import workspace
 from flexsurr.training.losses import output_weights
@@ -28,8 +29,7 @@ class Objective:
     @classmethod
     def of(cls, network: Network, x: Array, dx: Array) -> "Objective":
         """The objective for states `x` and derivatives `dx` (m, 2r), both in their units."""
-        count = x.shape[1]
-        return cls(network, x / network.scaling.states(count), dx / network.scaling.rates(count))
+        return cls(network, scaled_states(network.scaling, x), scaled_rates(network.scaling, dx))
 
     @cached_property
     def output_weights(self) -> Array:
@@ -44,7 +44,7 @@ class Objective:
     @cached_property
     def workspace(self) -> Array:
         """Scratch for one sample, in the precision of the samples."""
-        return workspace(self.network.widths).astype(self.x.dtype)
+        return workspace(self.network.widths, self.network.networks).astype(self.x.dtype)
 
     def kernel(self, parameters: Array) -> NamedTuple:
         """The network with these weights, for compiled code; the array is shared, not copied."""

@@ -3,21 +3,20 @@
 from numba import njit
 
 from flexsurr.surrogates.layers import back, offset
-from flexsurr.training.forward_pass import OPTIONS, VECTORS, ends
+from flexsurr.training.forward_pass import OPTIONS, VECTORS, ends, starts
 
 
 @njit(**OPTIONS)
-def scalar_gradient(kernel, parameters, head, work):
-    """Gradient of scalar number `head` by the inputs; returns its offset in `work`.
+def scalar_gradient(kernel, parameters, network, work):
+    """Gradient of the scalar of number `network` by the inputs; returns its offset in `work`.
 
     From what `propagate` left; the next call overwrites it.
     """
     widths = kernel.widths
     last = len(widths) - 1
-    block, layer, adjoint, _ = ends(widths)
-    readout = layer + offset(head) * offset(widths[last])
+    block, layer, adjoint, _ = ends(widths, *starts(kernel, network, parameters, work))
     for k in range(offset(widths[last])):
-        work[adjoint + k] = parameters[readout + k]
+        work[adjoint + k] = parameters[layer + k]
     for level in range(last, 0, -1):
         n = offset(widths[level - 1])
         m = offset(widths[level])
@@ -32,16 +31,18 @@ def scalar_gradient(kernel, parameters, head, work):
 
 
 @njit(**OPTIONS)
-def accumulate_slope(kernel, parameters, head, gradient, work):
-    """Add ∂(u · ∇ scalar)/∂θ of scalar number `head` to `gradient`, u being the inputs' tangents in `work`.
+def accumulate_slope(kernel, parameters, network, gradient, work):
+    """Add ∂(u · ∇ scalar)/∂θ of the scalar of number `network` to `gradient`.
+
+    u is its inputs' tangents in `work`.
 
     u · ∇ is the rate at which the scalar changes along u: one tangent sweep forwards, then one ordinary
     sweep back. Values, slopes and curvatures stay as `propagate` left them.
     """
     widths = kernel.widths
     last = len(widths) - 1
-    block = offset(0)
-    layer = offset(0)
+    layer, block = starts(kernel, network, parameters, work)
+    _, _, of_values, of_tangents = ends(widths, layer, block)
     for level in range(1, last + 1):
         n = offset(widths[level - 1])
         m = offset(widths[level])
@@ -62,13 +63,11 @@ def accumulate_slope(kernel, parameters, head, gradient, work):
             work[arguments + k] = work[curvatures + k] * work[tangents + k]
             work[tangents + k] *= work[slopes + k]
         layer += n * m + m
-    _, _, of_values, of_tangents = ends(widths)
     m = offset(widths[last])
-    readout = layer + offset(head) * m
     for k in range(m):
-        gradient[readout + k] += work[block + m + k]
+        gradient[layer + k] += work[block + m + k]
         work[of_values + k] = 0.0
-        work[of_tangents + k] = parameters[readout + k]
+        work[of_tangents + k] = parameters[layer + k]
     for level in range(last, 0, -1):
         n = offset(widths[level - 1])
         m = offset(widths[level])

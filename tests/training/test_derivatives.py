@@ -19,15 +19,11 @@ def automatic_jacobian(surrogate, x):
     """∂f/∂θ (m, 2r, n) of the scaled field in the layout of `Network.parameters`."""
     module = to_torch(surrogate).train()
     field = module(torch.from_numpy(x))
-    readouts = module.readout.weight if module.scalars else None  # one scalar after the other
-    transposed = [block.ndim == 2 and block is not readouts for block in module.parameters()]
     rows = [
         torch.cat(
             [
-                (block.T if turn else block).reshape(-1)
-                for block, turn in zip(
-                    torch.autograd.grad(f, module.parameters(), retain_graph=True), transposed, strict=True
-                )
+                block.T.reshape(-1) if block.ndim == 2 else block
+                for block in torch.autograd.grad(f, module.parameters(), retain_graph=True)
             ]
         )
         for f in field.reshape(-1)
