@@ -83,13 +83,17 @@ class InitialConditions(Record):
 
 
 class DatasetSettings(Record):
-    """Free responses from random initial states, in shards; drawn by `seed`, or else by the study's."""
+    """Free responses from random initial states, in shards; drawn by `seed`, or else by the study's.
+
+    Whole trajectories are held out of training, or single samples of every trajectory (`split_by`).
+    """
 
     seed: Annotated[int, Field(ge=0)] | None = None
     trajectories: Annotated[int, Field(ge=2)] = 50
     trajectories_per_shard: Count = 10
     duration_s: Positive = 0.2
     step_s: Positive = 0.001
+    split_by: Literal["trajectory", "sample"] = "trajectory"
     training_fraction: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.8
     initial_conditions: InitialConditions = InitialConditions()
     integrator: Integrator = Integrator(method="dop853", rtol=1e-10, atol=1e-12)

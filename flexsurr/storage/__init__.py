@@ -5,6 +5,7 @@ from flexsurr.storage.errors import StorageError
 from flexsurr.storage.manifest import (
     Manifest,
     ShardEntry,
+    SplitBy,
     build_manifest,
     read_manifest,
     read_shards,
@@ -29,6 +30,7 @@ __all__ = [
     "Shard",
     "ShardEntry",
     "ShardMetadata",
+    "SplitBy",
     "StorageError",
     "build_manifest",
     "read_all_samples",

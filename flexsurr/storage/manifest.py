@@ -1,4 +1,4 @@
-"""The manifest of a dataset: its shards with their hashes, the split by trajectory, the scales.
+"""The manifest of a dataset: its shards with their hashes, the split, the scales.
 
 Shards are read one at a time, so that memory does not grow with their number.
 """
@@ -8,14 +8,18 @@ import json
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flexsurr.storage.atomic import write_json
 from flexsurr.storage.errors import StorageError
 from flexsurr.storage.moments import Moments
 from flexsurr.storage.parquet import FORMAT_VERSION, Shard, ShardMetadata, read_shard
 from flexsurr.storage.scales import Scales
+
+SplitBy = Literal["trajectory", "sample"]
 
 SPLIT_STREAM = (0, 1)  # keeps the split's random numbers apart from those of any trajectory
 
@@ -35,7 +39,8 @@ class ShardEntry:
 class Manifest:
     """A dataset. `folder` is where the manifest was read from or will be written to.
 
-    `scales` are those of the training trajectories.
+    `train` and `validation` are the numbers of the trajectories; where the split is by sample, every
+    trajectory is in both. `scales` are those of the training samples.
     """
 
     folder: Path
@@ -50,6 +55,8 @@ class Manifest:
     validation: tuple[int, ...]
     scales: Scales
     failures: tuple[str, ...]
+    split_by: SplitBy = "trajectory"
+    training_fraction: float = 0.8
     format_version: int = FORMAT_VERSION
 
     @property
@@ -62,12 +69,30 @@ class Manifest:
         """Number of samples of all trajectories."""
         return sum(entry.samples for entry in self.shards)
 
+    def training_rows(self, shard: Shard) -> NDArray[np.bool_]:
+        """Which samples (m,) of one of its shards train; the others validate."""
+        return _training_rows(shard, self.split_by, self.train, self.training_fraction, self.seed)
+
     @property
     def sha256(self) -> str:
         """The hash of all that training depends on: the states, what the shards hold, and the split."""
         shards = [entry.sha256 for entry in self.shards]
         content = [self.state_names, self.state_units, shards, self.train, self.validation]
+        if self.split_by == "sample":
+            content += [self.seed, self.training_fraction]
         return hashlib.sha256(json.dumps(content).encode()).hexdigest()
+
+
+def split_samples(shard: Shard, training_fraction: float, seed: int) -> NDArray[np.bool_]:
+    """Which samples (m,) of a shard train: so many of them, in a random choice of its own.
+
+    Neither part is empty where the shard has two samples.
+    """
+    count = len(shard.t)
+    order = np.random.default_rng([seed, *SPLIT_STREAM, shard.metadata.first]).permutation(count)
+    rows = np.zeros(count, dtype=np.bool_)
+    rows[order[: min(max(round(training_fraction * count), 1), count - 1)]] = True
+    return rows
 
 
 def split_trajectories(
@@ -79,6 +104,14 @@ def split_trajectories(
     return tuple(sorted(order[:training].tolist())), tuple(sorted(order[training:].tolist()))
 
 
+def _training_rows(
+    shard: Shard, split_by: SplitBy, train: tuple[int, ...], training_fraction: float, seed: int
+) -> NDArray[np.bool_]:
+    if split_by == "sample":
+        return split_samples(shard, training_fraction, seed)
+    return np.isin(shard.trajectory, train)
+
+
 def build_manifest(
     paths: Sequence[Path],
     *,
@@ -87,6 +120,7 @@ def build_manifest(
     seed: int,
     configuration: str,
     trajectories: int,
+    split_by: SplitBy,
     training_fraction: float,
 ) -> Manifest:
     """The manifest of the shards at `paths`, which all lie in one folder.
@@ -94,7 +128,10 @@ def build_manifest(
     Raises StorageError naming each shard that is damaged, belongs to another dataset than the one
     described, or leaves a trajectory out or gives it twice.
     """
-    train, validation = split_trajectories(trajectories, training_fraction, seed)
+    if split_by == "sample":
+        train = validation = tuple(range(trajectories))
+    else:
+        train, validation = split_trajectories(trajectories, training_fraction, seed)
     problems, entries, moments = [], [], None
     failures: list[str] = []
     states: ShardMetadata | None = None
@@ -116,7 +153,7 @@ def build_manifest(
         states = shard.metadata
         failures += shard.metadata.failures
         entries.append(_entry(path, shard))
-        rows = np.isin(shard.trajectory, train)
+        rows = _training_rows(shard, split_by, train, training_fraction, seed)
         block = Moments.of(np.hstack([shard.x, shard.dx])[rows])
         moments = block if moments is None else moments.joined(block)
     if not problems:
@@ -136,6 +173,8 @@ def build_manifest(
         validation=validation,
         scales=Scales.of_moments(moments),
         failures=tuple(failures),
+        split_by=split_by,
+        training_fraction=training_fraction,
     )
 
 

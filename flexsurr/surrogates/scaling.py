@@ -170,7 +170,7 @@ def feature_scaling(scales: Scales) -> FeatureScaling:
 
 
 def min_max_scaling(scales: Scales) -> FeatureScaling:
-    """0 to 1 from the least to the largest value of each state and rate; ValueError where one does not vary."""
+    """0 to 1 from least to largest of each state and rate; ValueError where one does not vary."""
     low, spans = np.array(scales.low), np.subtract(scales.high, scales.low)
     x_from, dx_from = (tuple(part.tolist()) for part in np.split(low, 2))
     x, dx = (tuple(part.tolist()) for part in np.split(spans, 2))

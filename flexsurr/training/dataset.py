@@ -1,4 +1,4 @@
-"""Samples to train on and samples to validate on, split by trajectory: in memory, or shard by shard."""
+"""Samples to train on and samples to validate on: in memory, or shard by shard."""
 
 import hashlib
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -121,15 +121,15 @@ class ShardedDataset:
 
     def training_blocks(self) -> Iterator[Block]:
         """The samples to train on, a block for each shard."""
-        return self._blocks(self.manifest.train)
+        return self._blocks(training=True)
 
     def validation_blocks(self) -> Iterator[Block]:
         """The samples to validate on, a block for each shard."""
-        return self._blocks(self.manifest.validation)
+        return self._blocks(training=False)
 
-    def _blocks(self, trajectories: tuple[int, ...]) -> Iterator[Block]:
+    def _blocks(self, *, training: bool) -> Iterator[Block]:
         def block(shard: Shard) -> Block:
-            rows = np.isin(shard.trajectory, trajectories)
+            rows = self.manifest.training_rows(shard) == training
             return shard.x[rows], shard.dx[rows]
 
         return map(block, read_shards(self.manifest))  # unlike a loop, holds no shard while it reads the next
@@ -142,7 +142,7 @@ class ShardedDataset:
             trajectory,
             np.concatenate([shard.x for shard in shards]),
             np.concatenate([shard.dx for shard in shards]),
-            np.isin(trajectory, self.manifest.validation),
+            np.concatenate([~self.manifest.training_rows(shard) for shard in shards]),
             self.state_names,
             self.state_units,
             self.sha256,

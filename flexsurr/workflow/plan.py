@@ -158,6 +158,7 @@ class Plan:
             "configuration": self.dataset_hash(study, data),
             "shards": settings.dataset.shards,
             "trajectories": settings.dataset.trajectories,
+            "split_by": settings.dataset.split_by,
             "training_fraction": settings.dataset.training_fraction,
         }
 

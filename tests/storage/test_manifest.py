@@ -22,8 +22,10 @@ from flexsurr.storage import (
 DATASET = {"study": "beam", "variant": "hamiltonian", "seed": 7, "configuration": "c0ffee"}
 
 
-def build(paths: list[Path], trajectories: int = 6):
-    return build_manifest(paths, **DATASET, trajectories=trajectories, training_fraction=0.8)
+def build(paths: list[Path], trajectories: int = 6, split_by="trajectory"):
+    return build_manifest(
+        paths, **DATASET, trajectories=trajectories, split_by=split_by, training_fraction=0.8
+    )
 
 
 @given(count=st.integers(2, 300), fraction=st.floats(0.01, 0.99), seed=st.integers(0, 2**32))
@@ -38,6 +40,24 @@ def test_the_split_is_a_partition_and_repeats_itself(count, fraction, seed):
 
 def test_another_seed_splits_otherwise():
     assert split_trajectories(50, 0.8, 1) != split_trajectories(50, 0.8, 2)
+
+
+def test_a_split_by_sample_takes_its_share_of_every_shard(dataset):
+    """Whatever the other shards are; and the scales are those of the samples that train."""
+    manifest = build(dataset, split_by="sample")
+    shards = [read_shard(path) for path in dataset]
+    rows = [manifest.training_rows(shard) for shard in shards]
+    assert [row.sum() for row in rows] == [round(0.8 * len(row)) for row in rows]
+    assert any(
+        0 < row[shard.trajectory == shard.trajectory[0]].mean() < 1
+        for row, shard in zip(rows, shards, strict=True)
+    )
+    values = np.concatenate([np.hstack([s.x, s.dx])[row] for s, row in zip(shards, rows, strict=True)])
+    np.testing.assert_allclose(manifest.scales.mean, values.mean(axis=0), rtol=1e-12, atol=1e-15)
+    np.testing.assert_array_equal(manifest.scales.low, values.min(axis=0))
+    np.testing.assert_array_equal(manifest.scales.high, values.max(axis=0))
+    assert manifest.sha256 != build(dataset).sha256
+    assert manifest.sha256 != replace(manifest, seed=8).sha256
 
 
 def test_a_manifest_is_read_as_it_was_written(dataset):

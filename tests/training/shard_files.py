@@ -9,7 +9,9 @@ from flexsurr.storage import Shard, ShardMetadata, build_manifest, write_manifes
 OF = {"study": "oscillator", "variant": "hamiltonian", "seed": 1, "configuration": "abc"}
 
 
-def write_dataset(folder: Path, responses, sizes, names, units, training_fraction=0.7) -> Path:
+def write_dataset(
+    folder: Path, responses, sizes, names, units, training_fraction=0.7, split_by="trajectory"
+) -> Path:
     """The manifest of shards of `sizes` trajectories each; `responses`: (x, dx) of every trajectory."""
     paths: list[Path] = []
     for first, count in zip(np.cumsum([0, *sizes[:-1]]).tolist(), sizes, strict=True):
@@ -23,6 +25,12 @@ def write_dataset(folder: Path, responses, sizes, names, units, training_fractio
         )
         paths.append(folder / f"shard-{len(paths)}.parquet")
         write_shard(paths[-1], shard)
-    manifest = build_manifest(paths, **OF, trajectories=len(responses), training_fraction=training_fraction)
+    manifest = build_manifest(
+        paths,
+        **OF,
+        trajectories=len(responses),
+        split_by=split_by,
+        training_fraction=training_fraction,
+    )
     write_manifest(folder / "manifest.json", manifest)
     return folder / "manifest.json"

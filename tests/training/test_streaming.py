@@ -78,12 +78,12 @@ class Watched(ShardedDataset):
 
         monkeypatch.setattr(manifest, "read_shard", counting)
 
-    def _blocks(self, trajectories):
+    def _blocks(self, *, training):
         def noted(block):
             self.seen.extend(map(weakref.ref, block))
             return block
 
-        return map(noted, super()._blocks(trajectories))
+        return map(noted, super()._blocks(training=training))
 
 
 @of_both
