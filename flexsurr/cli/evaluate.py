@@ -5,12 +5,13 @@ from pathlib import Path
 from flexsurr.beam import EquilibriumNotFound, reduce
 from flexsurr.cli.command import Job, command
 from flexsurr.cli.frames import write_frame
-from flexsurr.cli.selected import most_accurate, selected_surrogates
+from flexsurr.cli.selected import most_accurate, selected_runs, selected_surrogates
 from flexsurr.config.part import part_of
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Study
 from flexsurr.evaluation.contenders import with_learned_loads
 from flexsurr.evaluation.cost import cost_table
+from flexsurr.evaluation.published import is_of_the_recipe
 from flexsurr.surrogates import load_map
 
 
@@ -26,7 +27,12 @@ def main(job: Job, selection: Path, runs: Path, loads: list[Path], output: Path)
     best = most_accurate(selection, variant)
     maps = {path.stem: load_map(path) for path in loads}
     learned = [] if best is None else with_learned_loads(best, surrogates[best], maps)
-    table = cost_table(job["study"], study, basis, variant, job["response"], surrogates, learned)
+    recipes = {
+        name: run["architecture"]
+        for name, run in selected_runs(selection, variant).items()
+        if is_of_the_recipe(run)
+    }
+    table = cost_table(job["study"], study, basis, variant, job["response"], surrogates, learned, recipes)
     write_frame(output, table)
 
 

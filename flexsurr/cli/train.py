@@ -21,9 +21,10 @@ PROGRESS_EVERY_S = 5.0
 
 
 def main(job: Job, manifest: Path, store: Path, folder: Path) -> None:
-    """Write parameters.json, fit.json, history.parquet and weights.npz of the run into `folder`.
+    """Write parameters.json, fit.json, history.parquet, weights.npz and best.npz of the run into `folder`.
 
-    A trial that diverges ends well, with status "failed", its reason, and the best weights it met.
+    weights.npz holds what the trial keeps, best.npz what validated best. A trial that diverges ends well,
+    with status "failed", its reason, and the best weights it met.
     """
     with alone_in(folder):
         _train(job, manifest, store, folder)
@@ -56,6 +57,7 @@ def _train(job: Job, manifest: Path, store: Path, folder: Path) -> None:
         figures = _figures(job, trial, result, dataset.sha256)
         page.status, page.reason = result.status, result.reason
         save(result.surrogate, folder / "weights.npz")
+        save(result.best, folder / "best.npz")
         with replacing(folder / "history.parquet") as beside:
             result.history.to_parquet(beside, index=False)
         write_json(folder / "fit.json", figures)
@@ -73,24 +75,22 @@ def _figures(job: Job, trial: Trial, result: Fit, dataset_sha256: str) -> dict[s
         "variant": job["variant"],
         # the same for all seeds, by which runs are gathered
         "configuration": run_id(
-            trial.model_copy(update={"seed": 0}), job["study"], job["variant"], job["dataset"]
+            trial.model_copy(update={"seed": None}), job["study"], job["variant"], job["data"]
         ),
         "dataset": job["dataset"],
         "status": result.status,
         "reason": result.reason,
-        "architecture": trial.architecture,
-        "hidden": "x".join(str(width) for width in trial.hidden),
-        "activation": trial.activation,
-        "degree": trial.degree,
-        "scaling": job["trial"].get("scaling", "canonical"),
-        "optimiser": trial.optimiser,
-        "seed": trial.seed,
+        **trial.model_dump(mode="json", exclude={"epochs"}),
+        "hidden": "x".join(str(width) for width in trial.hidden or ()),
+        "epoch_limit": trial.epochs,
         "epochs": result.epochs,
         "best_epoch": result.best_epoch,
         "wall_s": result.wall_s,
         "parameters": result.parameters,
+        "final_loss": _finite(result.final_loss),
         "train_nmse": _finite(result.train_nmse),
         "validation_nmse": _finite(result.validation_nmse),
+        "best_validation_nmse": _finite(result.best_validation_nmse),
         "dataset_sha256": dataset_sha256,
     }
 

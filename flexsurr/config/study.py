@@ -1,8 +1,9 @@
 """A study: one structure, its reduced model, dataset, sweeps and evaluation (config/studies/*.yaml)."""
 
-from typing import Annotated, Literal, Self
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from flexsurr.config.activation import Activation
 from flexsurr.config.load import Load, Sine, TipForce
@@ -191,7 +192,8 @@ class Study(Record):
 
     `sweeps` names each sweep of the study; the best surrogates of each stand side by side in the tables.
     The one called `default` is the one the figures show. Besides `dataset`, which every surrogate is
-    validated on, there may be `further_datasets`, and `trains_on` says which of them a sweep trains on.
+    validated on, there may be `further_datasets`, and `trains_on` says which of them a sweep trains on. One
+    of these that another file names is left out where its value is null.
     `frequencies_also_of` names structures whose
     natural frequencies are tabulated beside those of the study's own.
     """
@@ -207,6 +209,14 @@ class Study(Record):
     trains_on: dict[str, str] = Field(default_factory=dict)
     evaluation: EvaluationSettings = EvaluationSettings()
     statics: Statics = Statics()
+
+    @field_validator("sweeps", "further_datasets", "trains_on", mode="before")
+    @classmethod
+    def _left_out(cls, value: Any) -> Any:
+        """What another file names and this one sets to null is left out."""
+        if not isinstance(value, Mapping):
+            return value
+        return {name: each for name, each in value.items() if each is not None}
 
     @model_validator(mode="after")
     def _names_are_plain(self) -> Self:

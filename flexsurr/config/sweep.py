@@ -1,14 +1,9 @@
 """Hyperparameter sweeps: spaces of values, searched as a grid or by random draws (config/sweeps/*.yaml)."""
 
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import (
-    Field,
-    SerializerFunctionWrapHandler,
-    field_validator,
-    model_serializer,
-    model_validator,
-)
+from pydantic import Field, field_validator, model_validator
 
 from flexsurr.config.activation import Activation
 from flexsurr.config.schema import Record
@@ -16,69 +11,106 @@ from flexsurr.config.structure import Positive
 from flexsurr.config.study import Count
 
 Architecture = Literal["mlp", "hnn", "dissipative_hnn", "port_hamiltonian", "polynomial"]
-ScalingKind = Literal["canonical", "per_feature"]
+ScalingKind = Literal["canonical", "per_feature", "min_max"]
 Optimiser = Literal["adam", "adam_cosine", "lbfgs", "levenberg_marquardt", "least_squares"]
+Precision = Literal["single", "double"]
+Loss = Literal["nmse", "mean_square", "norms"]
+Keep = Literal["best", "last"]
+
+NETWORK = {"hidden": ..., "activation": ...}
+POLYNOMIAL = {"degree": ...}
+LIMITS = {"epochs": 1000, "patience": None, "time_limit_s": None, "keep": "best", "seed": 0}
+STOCHASTIC = {
+    "learning_rate": ...,
+    "batch_size": ...,
+    "precision": "double",
+    "loss": "nmse",
+}
+
+ARCHITECTURE_SETTINGS: dict[Architecture, dict[str, Any]] = {
+    "mlp": {**NETWORK, "scaling": "canonical"},
+    "hnn": {**NETWORK, "scaling": "canonical"},
+    "dissipative_hnn": {**NETWORK, "scaling": "canonical"},
+    "polynomial": POLYNOMIAL,
+    "port_hamiltonian": POLYNOMIAL,  # a network where `hidden` or `activation` is given
+}
+"""What each architecture takes, with its default; an ellipsis stands for none: it must be given."""
+
+OPTIMISER_SETTINGS: dict[Optimiser, dict[str, Any]] = {
+    "least_squares": {},
+    "levenberg_marquardt": LIMITS,
+    "lbfgs": LIMITS,
+    "adam": {**LIMITS, **STOCHASTIC},
+    "adam_cosine": {**LIMITS, **STOCHASTIC},
+}
+"""The same of each optimiser."""
 
 
 class Trial(Record):
-    """The resolved parameters of one training run, apart from its data. Hashed into the run_id."""
+    """The resolved parameters of one training run, apart from its data. Hashed into the run_id.
+
+    What its architecture and its optimiser do not take is None; giving it is an error. `loss` is what first-
+    order optimisers minimise: the nmse, the mean of squares of the scaled rates' errors, or eqs. 11 and 12
+    as printed (`norms`: a sample's ‖error of q̇‖ + ‖error of ṗ‖, and their mean over a batch). `keep` says
+    whether the weights are those that validated best or those of the last epoch.
+    """
 
     architecture: Architecture
-    hidden: tuple[Count, ...] = ()
+    hidden: tuple[Count, ...] | None = None
     activation: Activation | None = None
     degree: Count | None = None
+    scaling: ScalingKind | None = None
     optimiser: Optimiser = "levenberg_marquardt"
-    epochs: Count = 1000
+    epochs: Count | None = None
     batch_size: Count | None = None
     learning_rate: Positive | None = None
-    precision: Literal["single", "double"] = "double"
+    precision: Precision | None = None
+    loss: Loss | None = None
+    keep: Keep | None = None
     patience: Count | None = None
     time_limit_s: Positive | None = None
-    seed: Annotated[int, Field(ge=0)] = 0
-    scaling: ScalingKind = "canonical"
+    seed: Annotated[int, Field(ge=0)] | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _takes_what_is_given(cls, values: Any) -> Any:
+        """Fill in defaults; refuse what would do nothing."""
+        if not isinstance(values, Mapping):
+            return values
+        architecture = values.get("architecture")
+        optimiser = values.get("optimiser", "levenberg_marquardt")
+        if architecture not in ARCHITECTURE_SETTINGS or optimiser not in OPTIMISER_SETTINGS:
+            return values  # the fields' own types say what is allowed
+        given = {key: value for key, value in values.items() if value is not None}
+        takes = ARCHITECTURE_SETTINGS[architecture]
+        if architecture == "port_hamiltonian" and not {"hidden", "activation"}.isdisjoint(given):
+            takes = NETWORK
+        is_polynomial = takes is POLYNOMIAL
+        of_both = {**takes, **OPTIMISER_SETTINGS[optimiser]}
+        known = given.keys() & cls.model_fields.keys()
+        for key in sorted(known - of_both.keys() - {"architecture", "optimiser"}):
+            owner = architecture if key in (*NETWORK, *POLYNOMIAL, "scaling") else optimiser
+            raise ValueError(
+                f"{key} does nothing with {owner}; allowed: {', '.join(sorted(of_both)) or 'nothing more'}"
+            )
+        missing = [key for key, default in of_both.items() if default is ... and key not in given]
+        if missing:
+            raise ValueError(f"{architecture} with {optimiser} takes {' and '.join(missing)}")
+        if is_polynomial != (optimiser == "least_squares"):
+            allowed = "least_squares" if is_polynomial else "any but least_squares"
+            raise ValueError(f"optimiser: {optimiser!r} does not fit this {architecture}; allowed: {allowed}")
+        return {key: default for key, default in of_both.items() if default is not ...} | given
 
     @model_validator(mode="after")
     def _fits_the_architecture(self) -> Self:
-        if self.architecture == "polynomial" or (
-            self.architecture == "port_hamiltonian" and not self.hidden and self.activation is None
-        ):
-            self._check_polynomial()
-        else:
-            self._check_network()
-        if self.scaling == "per_feature" and self.architecture in ("polynomial", "port_hamiltonian"):
-            raise ValueError(f"{self.architecture} takes no scaling but canonical")
-        if self.optimiser in ("adam", "adam_cosine") and (
-            self.learning_rate is None or self.batch_size is None
-        ):
-            raise ValueError(f"{self.optimiser} takes learning_rate and batch_size")
-        return self
-
-    def _check_polynomial(self) -> None:
-        if self.degree is None or self.hidden or self.activation is not None:
-            if self.architecture == "port_hamiltonian":
-                raise ValueError("port_hamiltonian takes degree, or hidden and activation")
-            raise ValueError("polynomial takes degree, and neither hidden nor activation")
-        if self.optimiser != "least_squares":
-            raise ValueError(f"{self.architecture} with a degree takes the optimiser least_squares")
-
-    def _check_network(self) -> None:
-        if not self.hidden or self.activation is None or self.degree is not None:
-            raise ValueError(f"{self.architecture} takes hidden and activation, and no degree")
-        if self.optimiser == "least_squares":
-            raise ValueError(f"{self.architecture} is not linear in its weights: least_squares cannot fit it")
-        if self.architecture == "port_hamiltonian":
+        if self.hidden is not None and not self.hidden:
+            raise ValueError("hidden: one or more layers")
+        if self.architecture == "port_hamiltonian" and self.hidden is not None:
             if len(self.hidden) != 1:
                 raise ValueError(f"port_hamiltonian takes one hidden layer, not {len(self.hidden)}")
             if self.optimiser != "levenberg_marquardt":
                 raise ValueError("port_hamiltonian with hidden takes the optimiser levenberg_marquardt")
-
-    @model_serializer(mode="wrap")
-    def _without_the_usual_scaling(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Leave `scaling` out where it is canonical: trials of before it existed keep their run_id."""
-        values: dict[str, Any] = handler(self)
-        if self.scaling == "canonical":
-            values.pop("scaling", None)
-        return values
+        return self
 
 
 class Space(Record):
@@ -92,7 +124,9 @@ class Space(Record):
     epochs: Annotated[tuple[Count, ...], Field(min_length=1)] | None = None
     batch_size: Annotated[tuple[Count, ...], Field(min_length=1)] | None = None
     learning_rate: Annotated[tuple[Positive, ...], Field(min_length=1)] | None = None
-    precision: Annotated[tuple[Literal["single", "double"], ...], Field(min_length=1)] | None = None
+    precision: Annotated[tuple[Precision, ...], Field(min_length=1)] | None = None
+    loss: Annotated[tuple[Loss, ...], Field(min_length=1)] | None = None
+    keep: Annotated[tuple[Keep, ...], Field(min_length=1)] | None = None
     patience: Annotated[tuple[Count, ...], Field(min_length=1)] | None = None
     time_limit_s: Annotated[tuple[Positive, ...], Field(min_length=1)] | None = None
     seed: Annotated[tuple[Annotated[int, Field(ge=0)], ...], Field(min_length=1)] | None = None

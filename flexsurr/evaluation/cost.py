@@ -4,6 +4,7 @@ import logging
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
+from types import MappingProxyType
 from typing import Any
 
 import pandas as pd
@@ -60,17 +61,18 @@ def cost_table(
     response: Response,
     surrogates: Mapping[str, Any],
     learned: Iterable[Contender] = (),
+    recipes: Mapping[str, str] = MappingProxyType({}),
 ) -> pd.DataFrame:
     """The rows of cost.csv for one variant and response: `measurements`, summarised by `ratios.summary`.
 
     `surrogates` maps architectures to fitted surrogates; `learned` are those under learned loads
-    (`contenders.with_learned_loads`). Run it alone on the machine.
+    (`contenders.with_learned_loads`); `recipes` is as in `published.beside`. Run it alone on the machine.
     """
     frame = summary(measurements(study, basis, variant, response, surrogates, learned))
     frame.insert(0, "study", study_name)
     frame.insert(1, "variant", variant)
     frame.insert(2, "response", response)
-    frame = beside(frame, basis.structure.name)
+    frame = beside(frame, basis.structure.name, recipes)
     return frame[[*COST_COLUMNS, *frame.columns.difference(list(COST_COLUMNS), sort=False)]]
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import pandas as pd
 
 from flexsurr.evaluation.columns import COST_COLUMNS, FREQUENCY_COLUMNS, STATIC_COLUMNS
+from flexsurr.evaluation.published import published_loss
 from flexsurr.report.architectures import architectures
 from flexsurr.report.seeds import seeds
 from flexsurr.storage import replacing
@@ -18,11 +19,28 @@ TRAINING_COLUMNS = (
     "architecture",
     "hidden",
     "activation",
+    "degree",
+    "scaling",
     "optimiser",
+    "learning_rate",
+    "batch_size",
+    "precision",
+    "loss",
+    "keep",
+    "patience",
+    "time_limit_s",
+    "seed",
+    "dataset",
+    "epoch_limit",
     "epochs",
+    "best_epoch",
     "wall_s",
+    "parameters",
+    "final_loss",
     "train_nmse",
     "validation_nmse",
+    "best_validation_nmse",
+    "published_loss",
 )
 
 LEARNED_LOAD_COLUMNS = (
@@ -49,7 +67,10 @@ def natural_frequencies(frequencies: pd.DataFrame) -> pd.DataFrame:
 
 def training(metrics: pd.DataFrame) -> pd.DataFrame:
     """training.csv: every run, failed ones with empty losses; best validation first in each variant."""
-    frame = _columns(metrics, TRAINING_COLUMNS)
+    published = [
+        published_loss({str(key): value for key, value in run.items()}) for run in metrics.to_dict("records")
+    ]
+    frame = _columns(metrics.assign(published_loss=published), TRAINING_COLUMNS)
     return frame.sort_values(["study", "variant", "validation_nmse", "run_id"], ignore_index=True)
 
 

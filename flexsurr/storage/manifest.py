@@ -77,7 +77,7 @@ class Manifest:
     def sha256(self) -> str:
         """The hash of all that training depends on: the states, what the shards hold, and the split."""
         shards = [entry.sha256 for entry in self.shards]
-        content = [self.state_names, self.state_units, shards, self.train, self.validation]
+        content: list[object] = [self.state_names, self.state_units, shards, self.train, self.validation]
         if self.split_by == "sample":
             content += [self.seed, self.training_fraction]
         return hashlib.sha256(json.dumps(content).encode()).hexdigest()

@@ -68,9 +68,8 @@ def _scaling(values: dict[str, Any]) -> StateScaling:
     if "action" in values:
         return PairScaling(q=tuple(values["q"]), action=values["action"], energy=values["energy"])
     if "dx" in values:
-        return FeatureScaling(
-            **{name: each if each is None else tuple(each) for name, each in values.items()}
-        )
+        x_from, dx_from = (each and tuple(each) for each in (values["x_from"], values["dx_from"]))
+        return FeatureScaling(tuple(values["x"]), tuple(values["dx"]), x_from, dx_from)
     return Scaling(**values)
 
 

@@ -88,8 +88,8 @@ class FeatureScaling:
         for name, values in (("x", self.x), ("dx", self.dx)):
             for k, value in enumerate(values):
                 _check_positive(f"{name}_{k + 1}", value)
-        for values in (self.x_from, self.dx_from):
-            if values is not None and (len(values) != len(self.x) or not np.all(np.isfinite(values))):
+        for origin in (self.x_from, self.dx_from):
+            if origin is not None and (len(origin) != len(self.x) or not np.all(np.isfinite(origin))):
                 raise ValueError(f"scaled states and rates count from {len(self.x)} finite numbers each")
 
     @property

@@ -69,7 +69,7 @@ class Adam:
             self._objective.kernel(self.parameters),
             self._objective.x,
             self._objective.y,
-            self._objective.output_weights,
+            self._objective.step_weights,
             order,
             self._batch_size,
             rate,

@@ -5,8 +5,9 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal
+from typing import Literal, TypeVar
 
+import numpy as np
 import pandas as pd
 
 from flexsurr.config.sweep import Trial
@@ -21,6 +22,7 @@ from flexsurr.surrogates import (
     Surrogate,
     canonical_scaling,
     feature_scaling,
+    min_max_scaling,
 )
 from flexsurr.training.adam import Adam
 from flexsurr.training.dataset import Dataset, SampleSource
@@ -40,25 +42,32 @@ NETWORKS: dict[str, type[Network]] = {form.architecture: form for form in (HNN, 
 SCALINGS: dict[str, Callable[[Scales], StateScaling]] = {
     "canonical": canonical_scaling,
     "per_feature": feature_scaling,
+    "min_max": min_max_scaling,
 }
 FIRST_ORDER = ("adam", "adam_cosine")
+
+Setting = TypeVar("Setting")
 
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """What a trial came to. Losses are the nmse; `epochs` were done, and the weights are of `best_epoch`.
+    """What a trial came to: the surrogate that the trial keeps, and the one that validated best.
 
-    A failed fit holds the best weights it met: at epoch 0, the random ones it began with.
+    `final_loss` is the last epoch's, as trained; all others are the nmse. A failed fit holds the best weights
+    it met: at epoch 0, the random ones it began with.
     """
 
     surrogate: Surrogate
+    best: Surrogate
     status: Literal["finished", "failed"]
     reason: str
     epochs: int
     best_epoch: int
     wall_s: float
+    final_loss: float
     train_nmse: float
     validation_nmse: float
+    best_validation_nmse: float
     parameters: int
     history: pd.DataFrame
     validation_nmse_per_state: tuple[float, ...]
@@ -70,10 +79,10 @@ def fit(trial: Trial, source: SampleSource, folder: str | Path, report: Report |
     Least squares reads the samples block by block; every other optimiser has them all in memory.
     Ends after the trial's epochs, when validation has not improved by 1 % over `patience` of them, after
     `time_limit_s`, or when the optimiser has nothing left to do, and keeps the weights that validated
-    best. `report(epoch, train_loss, validation_loss, wall_s)` is called after each epoch. A loss that is
-    not finite ends the fit as failed, and a fit of which no epoch validates better than its start has
-    failed too. Interrupted and resumed, the weights are those of an uninterrupted run (unless the time
-    limit ends it).
+    best, or the last ones. `report(epoch, train_loss, validation_loss, wall_s)` is called after each epoch.
+    A loss that is not finite ends the fit as failed, and a fit of which no epoch validates better than its
+    start has failed too. Interrupted and resumed, the weights are those of an uninterrupted run (unless the
+    time limit ends it).
     """
     folder = Path(folder)
     if trial.optimiser == "least_squares":
@@ -84,22 +93,27 @@ def fit(trial: Trial, source: SampleSource, folder: str | Path, report: Report |
         optimiser,
         validation,
         network.parameters,
-        Limits(trial.epochs, trial.patience, trial.time_limit_s),
+        Limits(_of(trial.epochs), trial.patience, trial.time_limit_s),
         folder,
         {"trial": trial.model_dump(mode="json"), "dataset": dataset.sha256},
         report,
     )
-    network = replace(network, parameters=progress.best_parameters)
+    best = replace(network, parameters=progress.best_parameters)
+    last = replace(network, parameters=optimiser.parameters.astype(np.float64))
+    network = best if reason or trial.keep == "best" else last
     errors = FieldErrors.over(network, dataset.validation_blocks())
     return Fit(
         surrogate=network,
+        best=best,
         status="failed" if reason else "finished",
         reason=reason,
         epochs=progress.epoch,
         best_epoch=progress.best_epoch,
         wall_s=progress.wall_s,
+        final_loss=progress.final_loss,
         train_nmse=training.loss(network.parameters),
         validation_nmse=validation.loss(network.parameters),
+        best_validation_nmse=progress.best_loss,
         parameters=network.parameter_count,
         history=progress.history(),
         validation_nmse_per_state=tuple(errors.nmse_per_state().tolist()),
@@ -111,27 +125,28 @@ def _begun(trial: Trial, dataset: Dataset) -> tuple[Network | NetworkPortHamilto
     training = dataset.x_train, dataset.dx_train
     validation = dataset.x_validation, dataset.dx_validation
     if trial.architecture == "port_hamiltonian":
-        assert trial.activation is not None  # a Trial of a network has one
-        port = untrained_port_hamiltonian(dataset, trial.hidden, trial.activation, trial.seed)
+        hidden, activation, seed = _of(trial.hidden), _of(trial.activation), _of(trial.seed)
+        port = untrained_port_hamiltonian(dataset, hidden, activation, seed)
         inverse, forward = (PortHamiltonianObjective.of(port, *training, forward=f) for f in (False, True))
         held_out = PortHamiltonianObjective.of(port, *validation, forward=True)
         return port, forward, held_out, InverseThenForward(inverse, forward, port.parameters)
     network = _untrained(trial, dataset)
     objective = Objective.of(network, *training)
-    return network, objective, Objective.of(network, *validation), _optimiser(trial, objective)
+    stepped = replace(objective, minimised=trial.loss or "nmse")
+    return network, objective, Objective.of(network, *validation), _optimiser(trial, stepped)
 
 
 def _untrained(trial: Trial, dataset: Dataset) -> Network:
-    assert trial.activation is not None  # a Trial of a network has one
+    hidden = _of(trial.hidden)
     form = NETWORKS[trial.architecture]
     spread: Literal["torch", "wide"] = "torch" if trial.optimiser in FIRST_ORDER else "wide"
     return form(
-        parameters=initial_parameters(form, len(dataset.state_names), trial.hidden, spread, trial.seed),
-        scaling=SCALINGS[trial.scaling](dataset.scales),
+        parameters=initial_parameters(form, len(dataset.state_names), hidden, spread, _of(trial.seed)),
+        scaling=SCALINGS[_of(trial.scaling)](dataset.scales),
         state_names=dataset.state_names,
         state_units=dataset.state_units,
-        hidden=trial.hidden,
-        activation=trial.activation,
+        hidden=hidden,
+        activation=_of(trial.activation),
     )
 
 
@@ -143,30 +158,34 @@ def _optimiser(trial: Trial, objective: Objective) -> Optimiser:
         from flexsurr.training.lbfgs import LBFGS  # here, for it imports torch
 
         return LBFGS(objective, parameters)
-    assert trial.learning_rate is not None  # a Trial with Adam has both
-    assert trial.batch_size is not None
     return Adam(
         objective,
         parameters,
-        learning_rate=trial.learning_rate,
-        batch_size=trial.batch_size,
-        epochs=trial.epochs,
+        learning_rate=_of(trial.learning_rate),
+        batch_size=_of(trial.batch_size),
+        epochs=_of(trial.epochs),
         cosine=trial.optimiser == "adam_cosine",
-        precision=trial.precision,
-        seed=trial.seed,
+        precision=_of(trial.precision),
+        seed=_of(trial.seed),
     )
 
 
+def _of(setting: Setting | None) -> Setting:
+    """A setting that the trial's architecture or optimiser takes: a Trial has it then."""
+    assert setting is not None
+    return setting
+
+
 def _fit_linear(trial: Trial, source: SampleSource, report: Report | None) -> Fit:
-    assert trial.degree is not None  # a Trial of a polynomial has one
+    degree = _of(trial.degree)
     start = time.perf_counter()
     reason = ""
     surrogate: Surrogate
     if trial.architecture == "polynomial":
-        surrogate = fit_polynomial(source, trial.degree)
+        surrogate = fit_polynomial(source, degree)
     else:
         try:
-            surrogate = fit_port_hamiltonian(source, trial.degree)
+            surrogate = fit_port_hamiltonian(source, degree)
         except NotPositiveDefinite as failure:
             surrogate, reason = failure.surrogate, str(failure)
     training = FieldErrors.over(surrogate, source.training_blocks())
@@ -178,13 +197,16 @@ def _fit_linear(trial: Trial, source: SampleSource, report: Report | None) -> Fi
         report(1, *losses, progress.wall_s)
     return Fit(
         surrogate=surrogate,
+        best=surrogate,
         status="failed" if reason else "finished",
         reason=reason,
         epochs=1,
         best_epoch=1,
         wall_s=progress.wall_s,
+        final_loss=losses[0],
         train_nmse=losses[0],
         validation_nmse=losses[1],
+        best_validation_nmse=losses[1],
         parameters=surrogate.parameter_count,
         history=progress.history(),
         validation_nmse_per_state=tuple(validation.nmse_per_state().tolist()),

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,16 +15,22 @@ from flexsurr.training.forward_pass import workspace
 from flexsurr.training.losses import output_weights
 from flexsurr.training.normal_equations import NormalEquations, accumulated
 
+Minimised = Literal["nmse", "mean_square", "norms"]
+
 CHUNK = 1 << 20  # elements of the Jacobian that exist at a time: 8 MB
 
 
 @dataclass(frozen=True, eq=False)
 class Objective:
-    """The nmse of `network`, with any weights, at scaled states `x` and scaled derivatives `y` (m, 2r)."""
+    """The nmse of `network`, with any weights, at scaled states `x` and scaled derivatives `y` (m, 2r).
+
+    First-order steps may minimise another loss: see `batches.loss_and_gradient`.
+    """
 
     network: Network
     x: Array
     y: Array
+    minimised: Minimised = "nmse"
 
     @classmethod
     def of(cls, network: Network, x: Array, dx: Array) -> "Objective":
@@ -35,6 +41,14 @@ class Objective:
     def output_weights(self) -> Array:
         """Weights (2r,) of the outputs' mean squared errors, in the precision of the samples."""
         return output_weights(self.y).astype(self.y.dtype)
+
+    @cached_property
+    def step_weights(self) -> Array:
+        """Those of the loss that is `minimised`: equal ones for the mean of squares, none for norms."""
+        if self.minimised == "nmse":
+            return self.output_weights
+        count = self.y.shape[1]
+        return np.full(count, 1.0 / count if self.minimised == "mean_square" else 0.0, dtype=self.y.dtype)
 
     @cached_property
     def everything(self) -> NDArray[np.int64]:
@@ -56,10 +70,10 @@ class Objective:
         return float(np.einsum("si,si,i->", error, error, self.output_weights) / len(error))
 
     def gradient(self, parameters: Array, gradient: Array, samples: NDArray[np.int64] | None = None) -> float:
-        """The loss over all `samples` (indices; by default everything), its gradient into `gradient` (n,)."""
+        """What is `minimised`, over all `samples` (indices; by default all), its gradient into `gradient`."""
         chosen = self.everything if samples is None else samples
         return loss_and_gradient(
-            self.kernel(parameters), self.x, self.y, self.output_weights, chosen, gradient, self.workspace
+            self.kernel(parameters), self.x, self.y, self.step_weights, chosen, gradient, self.workspace
         )
 
     def normal_equations(self, parameters: Array) -> NormalEquations:

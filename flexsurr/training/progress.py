@@ -40,6 +40,11 @@ class Progress:
         """Seconds spent on them, interruptions not counted."""
         return self.rows[-1][1] if self.rows else 0.0
 
+    @property
+    def final_loss(self) -> float:
+        """The training loss of the last epoch, as trained; NaN before the first."""
+        return self.rows[-1][2] if self.rows else np.nan
+
     def add(self, wall_s: float, train_loss: float, validation_loss: float, parameters: Array) -> None:
         """Note the next epoch, and its weights if none validated as well before."""
         self.rows.append((self.epoch + 1.0, wall_s, train_loss, validation_loss))

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
-from flexsurr.config.study import DEFAULT
 from flexsurr.config.sweep import Space, Sweep, Trial
 
 DIGITS = 10
@@ -32,11 +31,12 @@ def expand(sweep: Sweep) -> list[Trial]:
     return list(trials)
 
 
-def run_id(trial: Trial, study: str, variant: str, dataset: str = DEFAULT) -> str:
-    """The architecture and ten hex digits of the hash of everything that names a run."""
-    content = {"study": study, "variant": variant, "trial": trial.model_dump(mode="json")}
-    if dataset != DEFAULT:
-        content["dataset"] = dataset
+def run_id(trial: Trial, study: str, variant: str, data: str) -> str:
+    """The architecture and ten hex digits of the hash of everything that names a run.
+
+    `data` is a hash of all that its dataset depends on: a run on other data is another run.
+    """
+    content = {"study": study, "variant": variant, "data": data, "trial": trial.model_dump(mode="json")}
     canonical = json.dumps(content, sort_keys=True, separators=(",", ":"))
     return f"{trial.architecture}-{hashlib.sha256(canonical.encode()).hexdigest()[:DIGITS]}"
 

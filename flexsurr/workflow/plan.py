@@ -112,13 +112,24 @@ class Plan:
     def runs(self) -> dict[str, Run]:
         """Training runs by their run_id."""
         return {
-            run_id(trial, name, variant, dataset): Run(name, variant, dataset, trial)
-            for name, resolved in self.studies.items()
-            for variant in resolved.study.variants
-            for sweep, trials in self._trials[name].items()
-            for dataset in [resolved.study.dataset_of(sweep)]
-            for trial in trials
+            key: run
+            for name in self.studies
+            for runs in self._sweeps(name).values()
+            for key, run in runs.items()
         }
+
+    def _sweeps(self, study: str) -> dict[str, dict[str, Run]]:
+        """The runs of each sweep of one study by their run_id."""
+        settings = self.studies[study].study
+        sweeps: dict[str, dict[str, Run]] = {sweep: {} for sweep in self._trials[study]}
+        for sweep, trials in self._trials[study].items():
+            dataset = settings.dataset_of(sweep)
+            for variant in settings.variants:
+                data = self.data_hash(study, data_folder(variant, dataset))
+                for trial in trials:
+                    key = run_id(trial, study, variant, data)
+                    sweeps[sweep][key] = Run(study, variant, dataset, trial)
+        return sweeps
 
     def runs_of(self, study: str) -> list[str]:
         """The run_ids of one study."""
@@ -145,8 +156,11 @@ class Plan:
 
     def dataset_hash(self, study: str, data: str) -> str:
         """The hash of every value that the trajectories of a dataset depend on."""
-        canonical = json.dumps(self._dataset(study, data), sort_keys=True)
-        return hashlib.sha256(canonical.encode()).hexdigest()[:16]
+        return _hash(self._dataset(study, data))
+
+    def data_hash(self, study: str, data: str) -> str:
+        """The hash of every value that training depends on by way of a dataset: its split too."""
+        return _hash(self.manifest(study, data))
 
     def manifest(self, study: str, data: str) -> Job:
         """The manifest of one dataset."""
@@ -176,6 +190,7 @@ class Plan:
             "study": run.study,
             "variant": run.variant,
             "dataset": run.dataset,
+            "data": self.data_hash(run.study, run.data),
             "trial": trial,
         }
 
@@ -186,15 +201,7 @@ class Plan:
 
     def select(self, study: str) -> Job:
         """The choice among the runs of each sweep of a study."""
-        sweeps = {
-            sweep: [
-                run_id(trial, study, variant, self.studies[study].study.dataset_of(sweep))
-                for variant in self.variants(study)
-                for trial in trials
-            ]
-            for sweep, trials in self._trials[study].items()
-        }
-        return {"study": study, "sweeps": sweeps}
+        return {"study": study, "sweeps": {name: list(runs) for name, runs in self._sweeps(study).items()}}
 
     def statics(self, study: str) -> Job:
         """Static deflection and natural frequencies."""
@@ -280,6 +287,10 @@ class Plan:
         settings = self.studies[study].study
         dataset = settings.datasets[data.partition("-")[2] or DEFAULT]
         return settings.model_copy(update={"dataset": dataset, "seed": settings.seed_of(dataset)})
+
+
+def _hash(job: Job) -> str:
+    return hashlib.sha256(json.dumps(job, sort_keys=True).encode()).hexdigest()[:16]
 
 
 def _variant(data: str) -> str:

@@ -60,6 +60,38 @@ def test_gradient_and_normal_equations(architecture, hidden, data, monkeypatch):
     np.testing.assert_allclose([*losses, equations.loss], expected, rtol=1e-12)
 
 
+LOSSES = {
+    "mean_square": lambda error: error.pow(2).mean(),
+    # eqs. 11 and 12 as printed, and the mean over the samples
+    "norms": lambda error: sum(half.norm(dim=1).mean() for half in error.chunk(2, dim=1)),
+}
+
+
+@pytest.mark.parametrize("minimised", LOSSES)
+@pytest.mark.parametrize("architecture", ["hnn", "mlp", "dissipative_hnn"])
+def test_the_losses_of_first_order_steps_are_torchs(architecture, minimised):
+    dataset = DATASETS["three pairs"]
+    surrogate = network(dataset, architecture, (4, 3))
+    objective = replace(Objective.of(surrogate, dataset.x_train, dataset.dx_train), minimised=minimised)
+    module = to_torch(surrogate).train()
+    loss = LOSSES[minimised](module(torch.from_numpy(objective.x)) - torch.from_numpy(objective.y))
+    blocks = torch.autograd.grad(loss, module.parameters())
+    expected = torch.cat([block.T.reshape(-1) if block.ndim == 2 else block for block in blocks]).numpy()
+    found = np.empty_like(expected)
+    assert objective.gradient(surrogate.parameters, found) == pytest.approx(loss.item(), rel=1e-12)
+    np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-12 * np.max(np.abs(expected)))
+
+
+def test_a_sample_without_error_has_no_gradient_of_its_norm():
+    dataset = DATASETS["one pair"]
+    surrogate = network(dataset, "mlp", (5,))
+    exact = Objective.of(surrogate, dataset.x_train, surrogate.derivative(0.0, dataset.x_train))
+    found = np.empty(surrogate.parameter_count)
+    loss = replace(exact, minimised="norms").gradient(surrogate.parameters, found)
+    assert loss == pytest.approx(0.0, abs=1e-12)
+    assert np.all(np.isfinite(found))
+
+
 def test_gradient_over_chosen_samples():
     dataset = DATASETS["one pair"]
     surrogate = network(dataset, "hnn", (5,))

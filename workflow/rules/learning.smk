@@ -19,6 +19,7 @@ rule train:
     output:
         parameters=f"{RESULTS}/runs/{{run_id}}/parameters.json",
         weights=f"{RESULTS}/runs/{{run_id}}/weights.npz",
+        best=f"{RESULTS}/runs/{{run_id}}/best.npz",
         history=f"{RESULTS}/runs/{{run_id}}/history.parquet",
         fit=f"{RESULTS}/runs/{{run_id}}/fit.json",
     log:
@@ -45,6 +46,7 @@ rule score:
     input:
         fit=rules.train.output.fit,
         weights=rules.train.output.weights,
+        best=rules.train.output.best,
         manifest=lambda w: (
             f"{RESULTS}/datasets/{plan.runs[w.run_id].study}/{plan.runs[w.run_id].variant}/manifest.json"
         ),
@@ -65,7 +67,7 @@ rule score:
         "scoring {wildcards.run_id}"
     shell:
         "python -m flexsurr.cli.score --job {params.job:q} --fit {input.fit:q} --weights {input.weights:q}"
-        " --manifest {input.manifest:q} --output {output:q} > {log:q} 2>&1"
+        " --best {input.best:q} --manifest {input.manifest:q} --output {output:q} > {log:q} 2>&1"
 
 
 rule select:
