@@ -1,5 +1,7 @@
 """Ratios to the three baselines, on wall times made up for the purpose."""
 
+import math
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -93,10 +95,20 @@ def test_without_a_common_simulation_there_is_no_ratio():
     assert np.isnan(relative_percent(None, pd.Series({2: 1.0}))[0])
 
 
-def test_the_published_figure_stands_beside_its_own_structure_model_and_response_only():
+def test_the_published_figure_stands_beside_the_network_of_the_recipe_in_torch_alone():
+    models = ["hnn", "hnn", "mlp", "hnn_small", "hnn", "hnn"]
+    responses = ["free", "forced", "free", "free", "free", "free"]
+    forms = [*["torch"] * 4, "compiled", "torch"]
+    integrators = [*["scipy_radau"] * 5, "dop853_fixed(h=0.01)"]
     costs = pd.DataFrame(
-        {"model": ["hnn", "hnn", "mlp", "rom"], "response": ["free", "forced", "free", "free"]}
+        {"model": models, "response": responses, "implementation": forms, "integrator": integrators}
     )
-    assert beside(costs, "cantilever")["paper_percent"].tolist()[:2] == [1.29, 83.60]
-    assert beside(costs, "cantilever")["paper_percent"].isna().tolist() == [False, False, True, True]
-    assert beside(costs, "another")["paper_percent"].isna().all()
+    nan = math.nan
+    recipes = {"hnn": "hnn", "mlp": "mlp"}
+    found = beside(costs, "cantilever", recipes)
+    np.testing.assert_array_equal(found["paper_percent"], [1.29, 83.60, 0.78, nan, nan, nan])
+    np.testing.assert_array_equal(found["paper_std_percent"], [0.07, 4.63, 0.06, nan, nan, nan])
+    named = beside(costs, "cantilever", {"hnn_small": "hnn"})
+    np.testing.assert_array_equal(named["paper_percent"], [nan, nan, nan, 1.29, nan, nan])
+    for others in (beside(costs, "elsewhere", recipes), beside(costs, "cantilever", {})):
+        assert others["paper_percent"].isna().all()

@@ -8,6 +8,7 @@ import pytest
 import yaml
 
 from flexsurr.config.settings import load
+from flexsurr.evaluation.published import is_of_the_recipe
 from flexsurr.workflow.plan import Plan
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -54,7 +55,8 @@ def change(root: Path, file: str, keys: str, value: object) -> None:
     (root / file).write_text(yaml.safe_dump(content))
 
 
-ALL_DATA = {"simulate", "manifest"}
+NAMED = {"train", "score", "select"}  # a run on other data is another run
+ALL_DATA = {"simulate", "manifest"} | NAMED
 SCORED = {"score", "respond", "cost"}
 OVER = f"overrides.{BEAM}"
 
@@ -62,14 +64,15 @@ CHANGES = [
     (STRUCTURE, "length_m", 1.1, ALL_DATA | SCORED | {"statics", "validation"}),
     (STUDY, "seed", 7, ALL_DATA | SCORED),
     (STUDY, "dataset.step_s", 0.002, ALL_DATA),
-    (STUDY, "dataset.training_fraction", 0.7, {"manifest"}),
+    (STUDY, "dataset.training_fraction", 0.7, {"manifest"} | NAMED),
+    (STUDY, "dataset.split_by", "sample", {"manifest"} | NAMED),
     (STUDY, "dataset.initial_conditions.q_max_deg", 10.0, ALL_DATA | SCORED),
     (STUDY, "evaluation.load.force_N", 5.0, {"validation", "respond", "cost"}),
     (QUICK, f"{OVER}.evaluation.judging_integrator", {"method": "dop853"}, {"score"}),
     (QUICK, f"{OVER}.evaluation.drawing_integrator", {"method": "radau_iia_5"}, {"respond"}),
     (QUICK, f"{OVER}.evaluation.reference_integrator", {"method": "radau_iia_5"}, SCORED),
     (STUDY, "frequencies_also_of", ["config/structures/wing.yaml"], {"statics"}),
-    (QUICK, f"{OVER}.dataset.trajectories", 9, {"manifest", "simulate"}),
+    (QUICK, f"{OVER}.dataset.trajectories", 9, ALL_DATA),
     (QUICK, f"{OVER}.evaluation.repeats", 2, {"cost"}),
     (QUICK, f"{OVER}.evaluation.described_simulations.as_printed", 2, {"cost"}),
     (QUICK, f"{OVER}.evaluation.simulations", 3, {"respond", "cost"}),
@@ -158,12 +161,28 @@ def test_the_figure_of_architectures_sees_every_study_of_the_same_structure(root
     assert "architecture_errors" not in p.figures(BEAM)
 
 
-def test_the_papers_recipe_stands_beside_the_default_sweep():
-    configuration = load(REPOSITORY, ["config/config.yaml", "config/presets/paper.yaml"])
-    sweeps = Plan(configuration).select(BEAM)["sweeps"]
-    assert set(sweeps) == {"default", "paper"}
-    assert [key.split("-")[0] for key in sweeps["paper"]] == ["hnn", "mlp"] * 2
-    alone = Plan(load(REPOSITORY, ["config/config.yaml"]))
-    assert set(alone.runs_of(BEAM)) < set(Plan(configuration).runs_of(BEAM))
-    sweeps = Plan(configuration).select("wing_unit")["sweeps"]
-    assert [key.split("-")[0] for key in sweeps["paper"]] == ["dissipative_hnn", "mlp"] * 2
+def test_the_papers_preset_trains_its_recipes_on_its_data():
+    p = Plan(load(REPOSITORY, ["config/config.yaml", "config/presets/paper.yaml"]))
+    assert set(p.studies) == {BEAM, "wing_unit"}
+    for study, architectures in (
+        (BEAM, ["hnn", "hnn", "mlp", "mlp"]),
+        ("wing_unit", ["dissipative_hnn", "mlp"]),
+    ):
+        runs = [p.runs[key] for key in p.runs_of(study)]
+        assert [run.trial.architecture for run in runs] == architectures
+        assert {run.data for run in runs} == {"as_printed"}
+        dataset = p.studies[study].study.dataset
+        assert (dataset.split_by, dataset.integrator.method) == ("sample", "scipy_radau")
+        structure = p.studies[study].structure.name
+        for run in runs:
+            trial = run.trial
+            described = {"structure": structure, **trial.model_dump(mode="json"), "epoch_limit": trial.epochs}
+            assert is_of_the_recipe(described | {"hidden": str(trial.hidden[0])})
+
+
+def test_other_data_make_other_runs_and_leave_the_old_ones(root):
+    before = plan(root).runs_of(BEAM)
+    change(root, STRUCTURE, "elements", 12)
+    assert set(before).isdisjoint(plan(root).runs)
+    change(root, STRUCTURE, "elements", 10)
+    assert plan(root).runs_of(BEAM) == before

@@ -1,5 +1,6 @@
 """From a sweep to trials and their names."""
 
+import itertools
 import re
 
 import pytest
@@ -35,17 +36,17 @@ def test_a_value_more_keeps_the_other_runs():
     before = expand(Sweep(spaces=(NETWORKS,)))
     wider = NETWORKS.model_copy(update={"activation": ("softplus", "elu", "silu")})
     after = expand(Sweep(spaces=(wider,)))
-    assert {run_id(t, "s", "v") for t in before} < {run_id(t, "s", "v") for t in after}
+    assert {run_id(t, "s", "v", "d") for t in before} < {run_id(t, "s", "v", "d") for t in after}
 
 
 @pytest.mark.parametrize(
     ("space", "reason"),
     [
         (Space(architecture="polynomial", degree=(4,)), "least_squares"),
-        (Space(architecture="hnn", hidden=((8,),)), "takes hidden and activation"),
+        (Space(architecture="hnn", hidden=((8,),)), "hnn with levenberg_marquardt takes activation"),
         (
             Space(architecture="mlp", hidden=((8,),), activation=("elu",), optimiser=("adam",)),
-            "learning_rate and batch_size",
+            "mlp with adam takes learning_rate and batch_size",
         ),
     ],
 )
@@ -59,36 +60,56 @@ def test_a_combination_that_makes_no_trial_is_named(space, reason):
 
 def test_run_ids_name_their_content():
     trials = expand(Sweep(spaces=(NETWORKS, POLYNOMIALS)))
-    ids = {run_id(t, study, variant) for t in trials for study in ("a", "b") for variant in ("x", "y")}
-    assert len(ids) == 4 * len(trials)
+    ids = {run_id(t, *of) for t in trials for of in itertools.product("ab", "xy", ("data", "others"))}
+    assert len(ids) == 8 * len(trials)
     assert all(re.fullmatch(r"(hnn|polynomial)-[0-9a-f]{10}", name) for name in ids)
 
 
 def test_run_ids_do_not_change_unnoticed():
     """A change of these names reruns every run there is: intended, or a mistake."""
     trial = Trial(architecture="polynomial", degree=6, optimiser="least_squares")
-    assert run_id(trial, "cantilever", "hamiltonian") == "polynomial-0a5e215ee1"
+    assert run_id(trial, "cantilever", "hamiltonian", "0123456789abcdef") == "polynomial-8da97e8753"
 
 
-def test_a_scaling_is_part_of_the_name_unless_it_is_the_usual_one():
-    space = NETWORKS.model_copy(update={"scaling": ("canonical", "per_feature"), "seed": (0,)})
-    trials = expand(Sweep(spaces=(space,)))
-    ids = [run_id(trial, "s", "v") for trial in trials]
-    assert len(set(ids)) == len(trials) == 12
-    usual = expand(Sweep(spaces=(NETWORKS.model_copy(update={"seed": (0,)}),)))
-    assert {run_id(trial, "s", "v") for trial in usual} < set(ids)
-    assert all(Trial.model_validate(trial.model_dump(mode="json")) == trial for trial in trials)
+def test_a_default_that_is_spelled_out_is_the_same_run():
+    short = Trial(architecture="hnn", hidden=(8,), activation="elu")
+    assert short == Trial(architecture="hnn", hidden=(8,), activation="elu", scaling="canonical", epochs=1000)
+    assert Trial.model_validate(short.model_dump(mode="json")) == short
 
 
 @pytest.mark.parametrize(
     ("changes", "reason"),
     [
-        ({}, "degree, or hidden and activation"),
-        ({"degree": 4}, "takes the optimiser least_squares"),
-        ({"degree": 4, "optimiser": "least_squares", "scaling": "per_feature"}, "no scaling but canonical"),
+        ({"learning_rate": 0.01}, "learning_rate does nothing with levenberg_marquardt; allowed: "),
+        ({"loss": "norms"}, "loss does nothing with levenberg_marquardt"),
+        ({"degree": 4}, "degree does nothing with hnn"),
+        ({"optimiser": "lbfgs", "batch_size": 8}, "batch_size does nothing with lbfgs"),
+        ({"optimiser": "least_squares"}, "does nothing with least_squares|does not fit this hnn"),
+        ({"scaling": "per_trajectory"}, "canonical"),
+    ],
+)
+def test_what_would_do_nothing_is_refused(changes, reason):
+    with pytest.raises(ValueError, match=reason):
+        Trial(**{"architecture": "hnn", "hidden": (8,), "activation": "elu", **changes})
+
+
+def test_a_seed_does_nothing_to_least_squares():
+    with pytest.raises(ValueError, match="seed does nothing with least_squares; allowed: degree"):
+        Trial(architecture="polynomial", degree=6, optimiser="least_squares", seed=1)
+
+
+@pytest.mark.parametrize(
+    ("changes", "reason"),
+    [
+        ({}, "takes degree"),
+        ({"degree": 4}, "least_squares"),
+        (
+            {"degree": 4, "optimiser": "least_squares", "scaling": "per_feature"},
+            "scaling does nothing with port_hamiltonian",
+        ),
         ({"hidden": (8,), "activation": "silu", "optimiser": "lbfgs"}, "levenberg_marquardt"),
         ({"hidden": (8, 8), "activation": "silu"}, "one hidden layer, not 2"),
-        ({"hidden": (8,), "activation": "silu", "degree": 4}, "no degree"),
+        ({"hidden": (8,), "activation": "silu", "degree": 4}, "degree does nothing"),
     ],
 )
 def test_a_port_hamiltonian_trial_is_one_of_two(changes, reason):
