@@ -124,7 +124,7 @@ BAD_VALUES = [
     (SWEEP, "spaces.0.hiden", [[8]], ["spaces[0].hiden", "did you mean 'hidden'"]),
     (SWEEP, "spaces.0.architecture", "hmm", ["spaces[0].architecture", "'hmm'", "hnn"]),
     (SWEEP, "spaces.1.optimiser", ["adam"], ["adam takes learning_rate and batch_size"]),
-    (SWEEP, "spaces.1.degree", [4], ["no degree"]),
+    (SWEEP, "spaces.1.degree", [4], ["degree does nothing with hnn"]),
     (SWEEP, "spaces", [], ["spaces", "[]", "at least one value"]),
     (SWEEP, "search", "random", ["draws is given exactly when search is random"]),
 ]
