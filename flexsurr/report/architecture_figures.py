@@ -23,11 +23,18 @@ from flexsurr.report.style import (
 LARGEST_PERCENT = 1e3
 """Errors beyond, and responses that did not reach their end, stand at this height."""
 
+BY_PAIRS = "by_pairs"
+"""How the port-Hamiltonian forms and polynomials scale the states; their trials have no choice of it."""
+
 MARKERS = {
-    ("mass", "canonical"): "o",
+    ("mass", BY_PAIRS): "o",
+    ("mass", "canonical"): "h",
     ("mass", "per_feature"): "s",
-    ("unit", "canonical"): "^",
+    ("mass", "min_max"): "P",
+    ("unit", BY_PAIRS): "^",
+    ("unit", "canonical"): "v",
     ("unit", "per_feature"): "D",
+    ("unit", "min_max"): "X",
 }
 """By the normalisation of the modes and the scaling of the states."""
 
@@ -43,7 +50,7 @@ def architecture_errors(metrics: pd.DataFrame) -> Figure:
     variants = [variant for variant in VARIANTS if variant in set(metrics["variant"])]
     figure = new_figure(PAGE_IN, 3.9)
     axes = figure.subplots(1, len(variants), sharex=True, sharey=True, squeeze=False)[0]
-    judged = metrics[metrics["held_out_nmse"].notna()]
+    judged = metrics[metrics["held_out_nmse"].notna()].fillna({"scaling": BY_PAIRS})
     for ax, variant in zip(axes, variants, strict=True):
         for _, run in judged[judged["variant"] == variant].iterrows():
             _point(ax, run)

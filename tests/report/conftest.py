@@ -262,11 +262,11 @@ def history(metrics) -> pd.DataFrame:
 def relatives() -> pd.DataFrame:
     """Runs of two studies of one structure, with other modes, scalings and datasets."""
     settings = [
-        ("mlp", "mass", "canonical", "default"),
+        ("mlp", "unit", "min_max", "default"),
         ("dissipative_hnn", "mass", "canonical", "default"),
         ("dissipative_hnn", "mass", "per_feature", "many"),
         ("dissipative_hnn", "unit", "canonical", "default"),
-        ("port_hamiltonian", "mass", "canonical", "many"),
+        ("port_hamiltonian", "mass", None, "many"),
     ]
     rows = [
         {
