@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from flexsurr.beam.chain import chain, rotary_inertia
-from flexsurr.beam.kinematics import configuration, projected_mass, tip_position, tip_twist
+from flexsurr.beam.kinematics import Configuration, configuration, projected_mass, tip_position, tip_twist
 from flexsurr.beam.projection import Projection
 from flexsurr.config.study import Variant
 from flexsurr.simulation.rhs import Array
@@ -68,12 +68,21 @@ class BeamModel(ABC):
         eta, momenta = x[..., :r], x[..., r:]
         beam = chain(self.projection.structure)
         at = configuration(beam, eta @ modes.T)
-        mass = projected_mass(beam, at, modes) + self.rotary_inertia
+        mass = self._mass(at)
         kinetic = 0.5 * np.sum(momenta * np.linalg.solve(mass, momenta[..., None])[..., 0], axis=-1)
         elastic = 0.5 * np.sum(eta * (eta @ self.projection.stiffness.T), axis=-1)
         undeformed = configuration(beam, np.zeros(beam.coordinates)).masses
         fall = np.sum(at.masses - undeformed, axis=-2) @ beam.gravity
         return kinetic + elastic - beam.element_mass * fall
+
+    def mass_matrix(self, eta: Array) -> Array:
+        """M (..., r, r) at η (..., r), with p = M η̇."""
+        beam = chain(self.projection.structure)
+        return self._mass(configuration(beam, np.asarray(eta) @ self.projection.modes.T))
+
+    def _mass(self, at: Configuration) -> Array:
+        beam = chain(self.projection.structure)
+        return projected_mass(beam, at, self.projection.modes) + self.rotary_inertia
 
     def tip(self, x: Array) -> Array:
         """(..., 3) position of the tip [m] at states x (..., 2r)."""

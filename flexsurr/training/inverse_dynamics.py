@@ -5,7 +5,8 @@ With measured rates, both
     M(q) q̇ = p        and        ½ ∂/∂q (q̇ᵀ M(q) q̇) − K q − C q̇ = ṗ
 
 are linear in the coefficients of M, in K and in C. A polynomial M⁻¹ would be no linear problem in K and C
-together with the field it makes, and fits far worse.
+together with the field it makes, and fits far worse. Where M is known at sampled configurations, no rates are
+needed: M depends on q alone.
 """
 
 import numpy as np
@@ -20,7 +21,8 @@ from flexsurr.surrogates.monomials import (
     evaluate_monomials,
     monomials_to_degree,
 )
-from flexsurr.surrogates.packed import packed_size, semidefinite_factor, symmetric
+from flexsurr.surrogates.packed import pack, packed_size, semidefinite_factor, symmetric
+from flexsurr.training.configuration_samples import ConfigurationSamples
 from flexsurr.training.dataset import SampleSource, for_each_piece
 from flexsurr.training.losses import FieldErrors
 from flexsurr.training.triangle import Triangle
@@ -43,15 +45,15 @@ class NotPositiveDefinite(Exception):
 class InverseDynamics:
     """The least-squares problem for monomials up to `degree`, fed block by block.
 
-    `spread` (2r,) is that of the channels, scaled: of p for the first equation, of ṗ for the second. Memory
-    is that of one block and of a triangle of the unknowns, however many samples there are.
+    Errors count relative to the spread of the channels: of p in the first equation, of ṗ in the second.
+    Memory is that of one block and of a triangle of the unknowns, however many samples there are.
     """
 
-    def __init__(self, degree: int, scaling: PairScaling, spread: Array) -> None:
-        self.scaling, self._spread = scaling, spread
+    def __init__(self, degree: int, scaling: PairScaling, source: SampleSource) -> None:
+        self.scaling, self._spread = scaling, channel_spread(scaling, source.scales)
+        self._states = source.state_names, source.state_units
         self.pairs = len(scaling.q)
-        constant = np.zeros((1, self.pairs), dtype=np.int64)
-        self.exponents: Exponents = np.concatenate([constant, monomials_to_degree(self.pairs, degree)])
+        self.exponents = _monomials(self.pairs, degree)
         self._lowered, self._derivative = differentiate(self.exponents)
         self._entries = packed_size(self.pairs)
         self._triangle = Triangle(self._entries * (len(self.exponents) + 2))
@@ -87,33 +89,94 @@ class InverseDynamics:
         rows /= self._spread[:, None]
         return rows.reshape(samples * 2 * r, -1)
 
-    def solve(
-        self, even: bool, state_names: tuple[str, ...], state_units: tuple[str, ...]
-    ) -> PolynomialPortHamiltonian:
+    def solve(self, even: bool) -> PolynomialPortHamiltonian:
         """The fitted surrogate; `even`: with even powers alone, which is what a symmetric structure has."""
-        kept = self.exponents.sum(axis=1) % 2 == 0 if even else np.ones(len(self.exponents), dtype=np.bool_)
+        kept = _kept(self.exponents, even)
         chosen = np.concatenate([np.tile(kept, self._entries), np.ones(2 * self._entries, dtype=np.bool_)])
         solution = self._triangle.solve(chosen)
         # what noise makes of a direction without damping may be slightly negative
         solution[-self._entries :] = semidefinite_factor(symmetric(solution[-self._entries :], self.pairs))
+        return PolynomialPortHamiltonian(solution, self.scaling, *self._states, self.exponents[kept])
+
+
+class MassMatrices:
+    """The least-squares problem for monomials up to `degree` where M is known at every configuration.
+
+    An error δM changes q̇ = M⁻¹ p by −M⁻¹ δM q̇, and with it the dampers' forces by C M⁻¹ δM q̇. The one counts
+    relative to the rates, the other to the springs' forces, which it nearly balances in slow motion; both on
+    average over rates whose components are independent and as large as the samples'.
+    """
+
+    def __init__(self, degree: int, scaling: PairScaling, samples: ConfigurationSamples) -> None:
+        self.scaling, self._samples = scaling, samples
+        self.pairs = len(scaling.q)
+        self.exponents = _monomials(self.pairs, degree)
+        self._entries = packed_size(self.pairs)
+        self._triangle = Triangle(self._entries * len(self.exponents))
+        units = symmetric(np.eye(self._entries), self.pairs)
+        rates = samples.dx_train[:, : self.pairs]
+        springs = samples.x_train[:, : self.pairs] @ samples.stiffness
+        sizes, forces = (np.sqrt(np.mean(values**2, axis=0))[:, None] for values in (rates, springs))
+        inverse = np.linalg.inv(samples.mass)
+        errors = np.concatenate([inverse / sizes, samples.damping @ inverse / forces], axis=1)
+        # (samples, rate in error, its cause, entry of δM); their triangle has the same sum of squares
+        effects = np.einsum("sij,ejk,k->sike", errors, units, sizes[:, 0])
+        weights = np.linalg.qr(effects.reshape(len(rates), -1, self._entries), mode="r")
+        monomials = evaluate_monomials(self.exponents, samples.x_train[:, : self.pairs] / scaling.q)
+        step = max(CHUNK // (self._entries**2 * len(self.exponents)), 1)
+        for first in range(0, len(rates), step):
+            part = slice(first, first + step)
+            matrix = np.einsum("sde,sm->sdem", weights[part], monomials[part])
+            target = np.einsum("sde,se->sd", weights[part], pack(samples.mass[part]))
+            self._triangle.add(np.hstack([matrix.reshape(target.size, -1), target.reshape(-1, 1)]))
+
+    def solve(self, even: bool) -> PolynomialPortHamiltonian:
+        """The fitted surrogate; `even`: with even powers alone, which is what a symmetric structure has."""
+        kept = _kept(self.exponents, even)
+        coefficients = self._triangle.solve(np.tile(kept, self._entries)).reshape(self._entries, -1)
+        q, energy, action = np.array(self.scaling.q), self.scaling.energy, self.scaling.action
+        of_products = np.outer(q, q)
+        parameters = [
+            coefficients * (pack(of_products) * energy / action**2)[:, None],
+            pack(self._samples.stiffness * of_products / energy),
+            semidefinite_factor(self._samples.damping * of_products / action),
+        ]
         return PolynomialPortHamiltonian(
-            solution, self.scaling, state_names, state_units, self.exponents[kept]
+            np.concatenate([part.ravel() for part in parameters]),
+            self.scaling,
+            self._samples.state_names,
+            self._samples.state_units,
+            self.exponents[kept],
         )
+
+
+def _monomials(pairs: int, degree: int) -> Exponents:
+    """Those of total degree ≤ `degree`, the constant first."""
+    constant = np.zeros((1, pairs), dtype=np.int64)
+    return np.concatenate([constant, monomials_to_degree(pairs, degree)])
+
+
+def _kept(exponents: Exponents, even: bool) -> NDArray[np.bool_]:
+    """A mask of all of them, or of those of even degree."""
+    return np.asarray(exponents.sum(axis=1) % (2 if even else 1) == 0)
 
 
 def fit_port_hamiltonian(source: SampleSource, degree: int) -> PolynomialPortHamiltonian:
     """The polynomial port-Hamiltonian surrogate of total degree ≤ `degree` in M, from the training samples.
 
-    Odd powers are kept where they make validation better by a factor of `AS_GOOD`. Samples are read twice,
+    By inverse dynamics, or from the mass matrices themselves where the samples have them. Odd powers are
+    kept where they make validation better by a factor of `AS_GOOD`. Samples are read twice,
     block by block. Raises NotPositiveDefinite if its mass matrix is none at a validation state, ValueError
     where the samples don't vary or are not finite.
     """
     scaling = pair_scaling(source.scales)
-    problem = InverseDynamics(degree, scaling, channel_spread(scaling, source.scales))
-    for_each_piece(source.training_blocks(), problem.add)
-    even, full = (
-        _Candidate(problem.solve(kind, source.state_names, source.state_units)) for kind in (True, False)
-    )
+    problem: MassMatrices | InverseDynamics
+    if isinstance(source, ConfigurationSamples):
+        problem = MassMatrices(degree, scaling, source)
+    else:
+        problem = InverseDynamics(degree, scaling, source)
+        for_each_piece(source.training_blocks(), problem.add)
+    even, full = (_Candidate(problem.solve(kind)) for kind in (True, False))
     for_each_piece(source.validation_blocks(), even.add, full.add)
     if even.indefinite_at is not None and full.indefinite_at is not None:
         raise NotPositiveDefinite(even.surrogate, even.indefinite_at)
