@@ -10,6 +10,7 @@ import time
 import urllib.error
 import urllib.request
 from dataclasses import dataclass
+from pathlib import Path
 
 import pytest
 from mlflow import MlflowClient
@@ -19,7 +20,9 @@ from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.by import By
 from selenium.webdriver.support.ui import WebDriverWait
 
-from flexsurr.report.catalogue import FIGURES, TABLES, damped
+from flexsurr.config.reading import read_yaml
+from flexsurr.config.structure import Structure
+from flexsurr.report.catalogue import FIGURES, TABLES
 from flexsurr.training.tracking import RUN_KEY, store_uri
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
@@ -35,7 +38,8 @@ QUIET = (
     "--window-size=1400,1000",
 )
 PATIENCE_S = 120
-OF_THE_CANTILEVER = [name for name, figure in FIGURES.items() if figure.shows is not damped]
+CANTILEVER = Structure(**read_yaml(Path(__file__).parents[2] / "config/structures/cantilever.yaml"))
+OF_THE_CANTILEVER = [name for name, figure in FIGURES.items() if figure.shows(CANTILEVER)]
 
 
 @pytest.fixture(scope="module")
