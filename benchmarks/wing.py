@@ -53,8 +53,8 @@ def free_responses(variant: Variant, kind: Kind, first: int, count: int, t) -> D
 
 def datasets(variant: Variant, kind: Kind = "modal") -> dict[str, Dataset]:
     """The study's 50 responses, and 1,000 others of five samples each, validated on all of the 50."""
-    fifty = free_responses(variant, kind, 0, 50, np.linspace(0.0, 0.2, 201))
-    others = free_responses(variant, kind, FIRST_OF_MANY, 1000, np.linspace(0.0, 0.2, 5))
+    fifty = free_responses(variant, kind, 0, 50, np.linspace(0.0, 1.0, 1001))
+    others = free_responses(variant, kind, FIRST_OF_MANY, 1000, np.linspace(0.0, 1.0, 5))
     many = replace(
         others,
         x_train=np.concatenate([others.x_train, others.x_validation]),
