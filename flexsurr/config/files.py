@@ -1,0 +1,120 @@
+"""A study of a user's own data: files with trajectories, and which of their columns is what."""
+
+from collections.abc import Iterator
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from flexsurr.config.schema import Record
+
+Word = Annotated[str, Field(min_length=1)]
+
+
+class StateColumn(Record):
+    """A state: its `column`, its `unit`, and the column of its time `derivative` [unit/s] if there is one.
+
+    `name` is what results call it; the column's name where none is given.
+    """
+
+    column: Word
+    unit: Word
+    derivative: Word | None = None
+    name: Word | None = None
+
+    @property
+    def called(self) -> str:
+        """Its name in results."""
+        return self.name or self.column
+
+
+class Pair(Record):
+    """A generalised coordinate q and its momentum p."""
+
+    q: StateColumn
+    p: StateColumn
+
+
+class Columns(Record):
+    """Which column of a table, or array of an NPZ archive, is what.
+
+    `t` is the time [s]. `trajectory` says which trajectory a row is of; without it each file is one.
+    The states are `pairs` (q, p), which every architecture takes, or any `states`, which an MLP takes.
+    """
+
+    t: Word = "t"
+    trajectory: Word | None = None
+    pairs: tuple[Pair, ...] = ()
+    states: tuple[StateColumn, ...] = ()
+
+    @model_validator(mode="after")
+    def _one_kind_of_states(self) -> Self:
+        if bool(self.pairs) == bool(self.states):
+            raise ValueError("the states are given by pairs of q and p, or else by states")
+        return self
+
+    @model_validator(mode="after")
+    def _each_name_once(self) -> Self:
+        for what, names in (("columns", list(self.named)), ("names of states", list(self.state_names))):
+            twice = sorted({name for name in names if names.count(name) > 1})
+            if twice:
+                raise ValueError(f"{what}: {', '.join(twice)} more than once")
+        return self
+
+    @model_validator(mode="after")
+    def _all_derivatives_or_none(self) -> Self:
+        missing = [state.called for state in self.ordered if state.derivative is None]
+        if self.have_derivatives and missing:
+            raise ValueError(
+                f"derivative: missing for {', '.join(missing)}; allowed: for every state, or for none"
+            )
+        return self
+
+    @property
+    def ordered(self) -> tuple[StateColumn, ...]:
+        """The states in the order of every dataset: all q, then all p."""
+        return self.states or (*(pair.q for pair in self.pairs), *(pair.p for pair in self.pairs))
+
+    @property
+    def state_names(self) -> tuple[str, ...]:
+        """What results call the states."""
+        return tuple(state.called for state in self.ordered)
+
+    @property
+    def state_units(self) -> tuple[str, ...]:
+        """Units of the states."""
+        return tuple(state.unit for state in self.ordered)
+
+    @property
+    def have_derivatives(self) -> bool:
+        """Whether the files hold the derivatives of the states."""
+        return any(state.derivative is not None for state in self.ordered)
+
+    @property
+    def named(self) -> Iterator[str]:
+        """Every column that must be there."""
+        yield self.t
+        if self.trajectory is not None:
+            yield self.trajectory
+        for state in self.ordered:
+            yield state.column
+            if state.derivative is not None:
+                yield state.derivative
+
+
+class DerivativeFilter(Record):
+    """How derivatives that the files lack are estimated: Savitzky–Golay.
+
+    The derivative at a sample is that of the polynomial of `order` that fits the nearest `window` samples of
+    its trajectory best. With `smooth_states` the states become the values of these polynomials too.
+    """
+
+    filter: Literal["savitzky_golay"] = "savitzky_golay"
+    window: Annotated[int, Field(ge=3)] = 9
+    order: Annotated[int, Field(ge=1)] = 3
+    smooth_states: bool = False
+
+    @model_validator(mode="after")
+    def _the_window_determines_the_polynomial(self) -> Self:
+        if self.window % 2 == 0 or self.window <= self.order:
+            raise ValueError(f"window: {self.window} is not allowed; allowed: odd, more than order")
+        return self
