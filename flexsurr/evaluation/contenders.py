@@ -52,6 +52,12 @@ def contenders(
     for implementation in get_args(Implementation):
         rom = reduced_order(basis, variant, implementation)
         found.append(Contender("rom", implementation, rom, rom.energy))
+    return [*found, *surrogate_contenders(surrogates, with_torch)]
+
+
+def surrogate_contenders(surrogates: Mapping[str, Any], with_torch: bool = False) -> list[Contender]:
+    """Each surrogate numpy, compiled and, on request, torch, as `contenders` has them."""
+    found = []
     for name, surrogate in surrogates.items():
         own_energy = getattr(surrogate, "energy", None)
         found.append(Contender(name, "numpy", surrogate, own_energy))
