@@ -1,5 +1,5 @@
-"""The commands that jobs run: read files, call the library, write files.
+"""The commands: read files, call the library, write files.
 
-Each is `python -m flexsurr.cli.<name> --job <file> …`; `--help` lists its files. A job holds exactly the
-values that the command depends on (flexsurr/workflow/plan.py).
+`flexsurr <name>`, or `python -m flexsurr <name>`, runs one; `--help` lists its options. Those of the workflow
+take `--job <file>`, which holds exactly the values that the command depends on (flexsurr/workflow/plan.py).
 """

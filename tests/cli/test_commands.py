@@ -1,6 +1,7 @@
 """How commands end: well, with one line for what was to be expected, with a traceback for what was not."""
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -8,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from flexsurr.__main__ import FOR_PEOPLE, commands
 from flexsurr.cli import join, pages
 from flexsurr.config.settings import load
 from flexsurr.storage import read_shard
@@ -31,9 +33,9 @@ command(main, {})
 """
 
 
-def run(command: str, *arguments: str) -> subprocess.CompletedProcess:
+def run(*arguments: str) -> subprocess.CompletedProcess:
     return subprocess.run(
-        [sys.executable, "-m", f"flexsurr.cli.{command}", *arguments],
+        [sys.executable, "-m", "flexsurr", *arguments],
         cwd=REPOSITORY,
         capture_output=True,
         text=True,
@@ -61,7 +63,7 @@ def test_what_is_to_be_expected_is_one_line(tmp_path):
     output = tmp_path / "manifest.json"
     done = run("manifest", "--job", str(job), "--folder", str(tmp_path), "--output", str(output))
     assert done.returncode == 1
-    assert done.stderr.startswith(f"flexsurr.cli.manifest: {rubbish}: damaged or truncated")
+    assert done.stderr.startswith(f"flexsurr manifest: {rubbish}: damaged or truncated")
     assert len(done.stderr.splitlines()) == 1
     assert not (tmp_path / "manifest.json").exists()
 
@@ -100,6 +102,54 @@ def test_a_command_told_to_stop_closes_what_is_open(tmp_path, sent, code):
     assert output == "closed\n"
     assert process.returncode == code
     assert "Traceback" not in errors
+
+
+def test_help_lists_every_command_of_the_rules_and_what_each_code_means():
+    text = run("--help").stdout
+    rules = "".join(path.read_text() for path in (REPOSITORY / "workflow" / "rules").glob("*.smk"))
+    called = set(re.findall(r"python -m flexsurr ([a-z-]+)", rules))
+    assert called
+    assert called | set(FOR_PEOPLE) == set(commands())
+    for part in (*commands().items(), "for you", "snakemake", "130"):
+        for word in (part,) if isinstance(part, str) else part:
+            assert word in text
+
+
+@pytest.mark.parametrize(("arguments", "code"), [((), 2), (("fly-away",), 2), (("--version",), 0)])
+def test_the_exit_code_says_whether_it_was_called_rightly(arguments, code):
+    done = run(*arguments)
+    assert done.returncode == code
+    assert len(done.stderr.splitlines()) == (1 if arguments == ("fly-away",) else 0)
+
+
+def test_each_command_explains_itself_by_the_name_it_is_called():
+    done = run("learn-load", "--help")
+    assert done.returncode == 0
+    assert done.stdout.startswith("usage: flexsurr learn-load ")
+    assert commands()["learn-load"] in " ".join(done.stdout.split())
+
+
+def test_the_list_of_commands_needs_no_library():
+    code = "import sys, flexsurr.__main__ as m; m.overview(); print({'numpy', 'pydantic'} & set(sys.modules))"
+    done = subprocess.run([sys.executable, "-c", code], cwd=REPOSITORY, capture_output=True, text=True)
+    assert done.stdout.strip() == "set()", done.stderr
+
+
+def test_checking_says_what_there_is_to_do(tmp_path):
+    done = run("check", "--configfile", "config/presets/quick.yaml")
+    assert done.returncode == 0, done.stderr
+    runs = len(PLAN.runs_of("wing"))
+    assert f"wing: wing, 1 variants, 2 datasets each, {runs} runs" in done.stdout
+
+
+def test_checking_says_what_is_wrong_in_a_line_each(tmp_path):
+    wrong = tmp_path / "wrong.yaml"
+    wrong.write_text("overrides: {wing: {seed: -1, colour: blue}}")
+    done = run("check", "--configfile", str(wrong))
+    assert done.returncode == 1
+    assert "Traceback" not in done.stderr
+    assert "seed" in done.stderr
+    assert "colour" in done.stderr
 
 
 def test_simulating_needs_neither_torch_nor_mlflow_nor_matplotlib():

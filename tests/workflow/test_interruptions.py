@@ -57,7 +57,7 @@ def training_processes(project) -> list[int]:
             here = (folder / "cwd").resolve() == project.root.resolve()
         except OSError:
             continue
-        if here and b"flexsurr.cli.train" in words and b"-m" in words[:3]:
+        if here and words[1:4] == [b"-m", b"flexsurr", b"train"]:
             found.append(int(folder.name))
     return found
 

@@ -35,7 +35,7 @@ rule sample_aerodynamics:
     message:
         "sampling the airliner's aerodynamics, {wildcards.dataset}, shard {wildcards.shard}"
     shell:
-        "python -m flexsurr.cli.sample_aerodynamics --job {params.job:q} --output {output:q}"
+        "python -m flexsurr sample-aerodynamics --job {params.job:q} --output {output:q}"
         " > {log:q} 2>&1"
 
 
@@ -68,7 +68,7 @@ rule train_coefficients:
     message:
         "training {wildcards.run_id}"
     shell:
-        "python -m flexsurr.cli.train_coefficients --job {params.job:q} --shards {input.shards:q}"
+        "python -m flexsurr train-coefficients --job {params.job:q} --shards {input.shards:q}"
         " --store {params.store:q} --folder {params.folder:q} > {log:q} 2>&1"
 
 
@@ -97,5 +97,5 @@ rule select_coefficients:
     message:
         "choosing the network that the airliner flies with"
     shell:
-        "python -m flexsurr.cli.select_coefficients --job {params.job:q} --runs {params.runs:q}"
+        "python -m flexsurr select-coefficients --job {params.job:q} --runs {params.runs:q}"
         " --store {params.store:q} --output {output.selection:q} --table {output.table:q} > {log:q} 2>&1"

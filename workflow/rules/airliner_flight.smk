@@ -34,7 +34,7 @@ rule fly:
     message:
         "trim, modes and doublets of the airliner"
     shell:
-        "python -m flexsurr.cli.fly --job {params.job:q} --selection {input.selection:q}"
+        "python -m flexsurr fly --job {params.job:q} --selection {input.selection:q}"
         " --runs {params.runs:q} --modes {output.modes:q} --table {output.table:q}"
         " --left_out {output.left_out:q} --elastic_modes {output.elastic_modes:q}"
         " --doublets {output.doublets:q} --trims {output.trims:q} > {log:q} 2>&1"
@@ -65,7 +65,7 @@ rule fly_randomly:
     message:
         "timing random flights of the airliner"
     shell:
-        "python -m flexsurr.cli.fly_randomly --job {params.job:q} --selection {input.selection:q}"
+        "python -m flexsurr fly-randomly --job {params.job:q} --selection {input.selection:q}"
         " --runs {params.runs:q} --flights {output.flights:q} --exceedances {output.exceedances:q}"
         " --cost {output.cost:q} --rows {output.rows:q} --limits {output.limits:q} > {log:q} 2>&1"
 
@@ -104,7 +104,7 @@ rule draw_airliner:
     message:
         "drawing the airliner"
     shell:
-        "python -m flexsurr.cli.draw_airliner --job {params.job:q} --selection {input.selection:q}"
+        "python -m flexsurr draw-airliner --job {params.job:q} --selection {input.selection:q}"
         " --runs {params.runs:q} --modes {input.modes:q}"
         " --doublets {input.doublets:q} --elastic_modes {input.elastic_modes:q} --folder {params.folder:q} > {log:q} 2>&1"
 
@@ -145,7 +145,7 @@ rule show_airliner:
     message:
         "pages of the airliner's tables"
     shell:
-        "python -m flexsurr.cli.pages --job {params.job:q} --tables {input.tables:q}"
+        "python -m flexsurr pages --job {params.job:q} --tables {input.tables:q}"
         " --captions {input.captions:q} --folder {params.folder:q} > {log:q} 2>&1"
 
 

@@ -28,7 +28,7 @@ rule simulate:
     message:
         "simulating shard {wildcards.shard} of {wildcards.study}, {wildcards.data}"
     shell:
-        "python -m flexsurr.cli.simulate --job {params.job:q} --output {output:q} > {log:q} 2>&1"
+        "python -m flexsurr simulate --job {params.job:q} --output {output:q} > {log:q} 2>&1"
 
 
 rule manifest:
@@ -54,7 +54,7 @@ rule manifest:
     message:
         "checking the dataset of {wildcards.study}, {wildcards.data}"
     shell:
-        "python -m flexsurr.cli.manifest --job {params.job:q} --folder {params.folder:q} --output {output:q}"
+        "python -m flexsurr manifest --job {params.job:q} --folder {params.folder:q} --output {output:q}"
         " > {log:q} 2>&1"
 
 
@@ -76,7 +76,7 @@ rule statics:
     message:
         "static deflection and natural frequencies of {wildcards.study}"
     shell:
-        "python -m flexsurr.cli.statics --job {params.job:q}"
+        "python -m flexsurr statics --job {params.job:q}"
         " --statics {output.statics:q} --frequencies {output.frequencies:q} > {log:q} 2>&1"
 
 
@@ -97,4 +97,4 @@ rule validation:
     message:
         "full and reduced order of {wildcards.study} side by side"
     shell:
-        "python -m flexsurr.cli.validate --job {params.job:q} --output {output:q} > {log:q} 2>&1"
+        "python -m flexsurr validate --job {params.job:q} --output {output:q} > {log:q} 2>&1"

@@ -24,7 +24,7 @@ rule responses:
     message:
         "responses and energies of {wildcards.study}, {wildcards.variant}"
     shell:
-        "python -m flexsurr.cli.respond --job {params.job:q} --selection {input.selection:q}"
+        "python -m flexsurr respond --job {params.job:q} --selection {input.selection:q}"
         " --runs {params.runs:q} --free {output.free:q} --forced {output.forced:q}"
         " --sustained {output.sustained:q} --energy {output.energy:q} > {log:q} 2>&1"
 
@@ -52,7 +52,7 @@ rule learn_load:
     message:
         "learning the load of {wildcards.study}, {wildcards.variant}"
     shell:
-        "python -m flexsurr.cli.learn_load --job {params.job:q} --manifest {input:q}"
+        "python -m flexsurr learn-load --job {params.job:q} --manifest {input:q}"
         " --polynomial {output.polynomial:q} --network {output.network:q} --errors {output.errors:q}"
         " > {log:q} 2>&1"
 
@@ -83,5 +83,5 @@ rule evaluate:
     message:
         "timing the {wildcards.response} response of {wildcards.study}, {wildcards.variant}"
     shell:
-        "python -m flexsurr.cli.evaluate --job {params.job:q} --selection {input.selection:q}"
+        "python -m flexsurr evaluate --job {params.job:q} --selection {input.selection:q}"
         " --runs {params.runs:q} --loads {input.loads:q} --output {output:q} > {log:q} 2>&1"

@@ -8,7 +8,7 @@ STORE = f"{RESULTS}/mlflow/store.json"
 onstart:
     # Two processes that create the store at once ruin it: it is there before the first job.
     tracked = write("store", plan.store())
-    shell("python -m flexsurr.cli.store --job {tracked:q} --output {STORE:q}")
+    shell("python -m flexsurr store --job {tracked:q} --output {STORE:q}")
 
 
 rule train:
@@ -38,7 +38,7 @@ rule train:
     message:
         "training {wildcards.run_id}"
     shell:
-        "python -m flexsurr.cli.train --job {params.job:q} --manifest {input.manifest:q}"
+        "python -m flexsurr train --job {params.job:q} --manifest {input.manifest:q}"
         " --store {params.store:q} --folder {params.folder:q} > {log:q} 2>&1"
 
 
@@ -66,7 +66,7 @@ rule score:
     message:
         "scoring {wildcards.run_id}"
     shell:
-        "python -m flexsurr.cli.score --job {params.job:q} --fit {input.fit:q} --weights {input.weights:q}"
+        "python -m flexsurr score --job {params.job:q} --fit {input.fit:q} --weights {input.weights:q}"
         " --best {input.best:q} --manifest {input.manifest:q} --output {output:q} > {log:q} 2>&1"
 
 
@@ -93,5 +93,5 @@ rule select:
     message:
         "choosing the surrogates of {wildcards.study}"
     shell:
-        "python -m flexsurr.cli.select --job {params.job:q} --runs {params.runs:q}"
+        "python -m flexsurr select --job {params.job:q} --runs {params.runs:q}"
         " --store {params.store:q} --output {output:q} > {log:q} 2>&1"

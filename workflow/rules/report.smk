@@ -42,7 +42,7 @@ rule draw:
     message:
         "drawing {wildcards.figure} of {wildcards.study}"
     shell:
-        "python -m flexsurr.cli.draw --job {params.job:q} --results {RESULTS:q} --output {output[0]:q}"
+        "python -m flexsurr draw --job {params.job:q} --results {RESULTS:q} --output {output[0]:q}"
         " > {log:q} 2>&1"
 
 
@@ -76,7 +76,7 @@ rule tabulate:
     message:
         "tabulating {wildcards.table} of {wildcards.study}"
     shell:
-        "python -m flexsurr.cli.tabulate --job {params.job:q} --results {RESULTS:q}"
+        "python -m flexsurr tabulate --job {params.job:q} --results {RESULTS:q}"
         " --caption {input.caption:q} --output {output[0]:q} > {log:q} 2>&1"
 
 
@@ -101,4 +101,4 @@ rule join:
     message:
         "joining the tables of all studies"
     shell:
-        "python -m flexsurr.cli.join --job {params.job:q} --inputs {input:q} --folder {params.folder:q} > {log:q} 2>&1"
+        "python -m flexsurr join --job {params.job:q} --inputs {input:q} --folder {params.folder:q} > {log:q} 2>&1"
