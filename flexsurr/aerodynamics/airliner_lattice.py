@@ -24,8 +24,6 @@ def airliner_lattice(aircraft: Aircraft, counts: PanelCounts | None = None) -> L
         (controls.aileron, AILERON_LEFT, AILERON_RIGHT),
         (controls.rudder, RUDDER, RUDDER),
     ):
-        if flap.surface in flaps:
-            raise ValueError(f"control_surfaces: two of them on {flap.surface}; the lattice takes one each")
         flaps[flap.surface] = (flap, left, right)
     parts = [
         *_both_halves(surfaces.wing, "wing", counts.wing, flaps.get("wing")),

@@ -28,7 +28,7 @@ _SMALLEST_STEP = 2.0**-30
 
 
 class EquilibriumNotFound(ArithmeticError):
-    """The structure buckles before the whole load acts; the message is one line and says where."""
+    """The structure buckles before the whole load acts, or has; the message is one line and says where."""
 
 
 def find_equilibrium(

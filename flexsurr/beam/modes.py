@@ -1,10 +1,10 @@
 """Natural frequencies and modes about an equilibrium (eq. 9), and the basis of a reduced model."""
 
 import numpy as np
-from scipy.linalg import LinAlgError, eigh
+from scipy.linalg import eigh
 
 from flexsurr.beam.chain import chain, check_coordinates, damping_matrix, stiffness_matrix
-from flexsurr.beam.equilibrium import find_equilibrium, tangent_stiffness
+from flexsurr.beam.equilibrium import EquilibriumNotFound, find_equilibrium, tangent_stiffness
 from flexsurr.beam.kinematics import configuration, generalised_forces, mass_matrix
 from flexsurr.beam.loads import Load
 from flexsurr.beam.projection import ModalBasis
@@ -18,18 +18,14 @@ def natural_modes(structure: Structure, equilibrium: Array, load: Load | None = 
 
     The stiffness is the tangent one about `equilibrium` (n,): springs less the change of the generalised
     forces of gravity and `load` with q. Each mode's sign lifts the tip; where the tip does not move in
-    z, the mode's largest component is positive. ValueError where the equilibrium
-    is unstable, or where a joint moves no mass.
+    z, the mode's largest component is positive. EquilibriumNotFound where the equilibrium is unstable.
     """
     q = check_coordinates(structure, equilibrium, "equilibrium")
-    try:
-        squares, modes = eigh(tangent_stiffness(structure, q, load), mass_matrix(structure, q))
-    except LinAlgError as error:
-        raise ValueError(
-            f"{structure.name}: a joint moves no mass; torsion needs inertia or offset"
-        ) from error
+    squares, modes = eigh(tangent_stiffness(structure, q, load), mass_matrix(structure, q))
     if squares[0] < 0.0:
-        raise ValueError(f"{structure.name}: the equilibrium is unstable (ω² = {squares[0]:.3g} rad²/s²)")
+        raise EquilibriumNotFound(
+            f"{structure.name}: the equilibrium is unstable (ω² = {squares[0]:.3g} rad²/s²)"
+        )
     return np.sqrt(squares), modes * _signs(structure, q, modes)
 
 

@@ -11,6 +11,8 @@ from flexsurr.beam.chain import chain, damping_matrix, stiffness_matrix
 from flexsurr.config.structure import Structure
 from flexsurr.simulation.rhs import Array
 
+_ROUNDING = 1e-12  # of a mode's components, beside its largest
+
 
 @dataclass(frozen=True, eq=False)
 class ModalBasis:
@@ -45,6 +47,13 @@ class Projection:
     def coordinates(self) -> int:
         """r, half the number of states."""
         return self.modes.shape[1]
+
+    @property
+    def only_twists(self) -> bool:
+        """Whether the tip stays where it is, whatever the coordinates: they move joints in torsion alone."""
+        kinds = np.repeat(self.structure.ordered_joints, self.structure.elements)
+        others = np.abs(self.modes[kinds != "torsion"])
+        return bool(np.all(others < _ROUNDING * np.max(np.abs(self.modes))))
 
     def joints(self, x: Array) -> Array:
         """Joint coordinates q (..., n) of the states x (..., 2r)."""

@@ -3,7 +3,7 @@
 import logging
 from pathlib import Path
 
-from flexsurr.beam import reduce
+from flexsurr.beam import EquilibriumNotFound, reduce
 from flexsurr.cli.command import Job, command
 from flexsurr.cli.frames import write_frame
 from flexsurr.config.part import part_of
@@ -41,5 +41,5 @@ if __name__ == "__main__":
             "network": "the forces as a network",
             "errors": "the held-out errors",
         },
-        expected=(ValueError,),
+        expected=(EquilibriumNotFound, ValueError),
     )

@@ -4,6 +4,7 @@ Axes of the file: x aft from the nose, y to the right, z up. Every block says wh
 """
 
 import math
+from itertools import accumulate
 from pathlib import Path
 from typing import Annotated, Literal, Self
 
@@ -86,6 +87,11 @@ class Surface(Record):
                 )
         return self
 
+    def section_ends(self, vertical: bool = False) -> tuple[float, ...]:
+        """Span coordinates [m] where its sections end: y, or height above the root where it is `vertical`."""
+        steps = (section.length_m * math.cos(math.radians(section.dihedral_deg)) for section in self.sections)
+        return tuple(accumulate(steps, initial=0.0 if vertical else self.root_m[1]))[1:]
+
 
 class Surfaces(Record):
     """Wing and tails; the wing and the horizontal tail have a left side that mirrors the right."""
@@ -94,12 +100,30 @@ class Surfaces(Record):
     horizontal_tail: Surface
     vertical_tail: Surface
 
+    @model_validator(mode="after")
+    def _beams_have_axes(self) -> Self:
+        for name in SURFACES:
+            surface: Surface = getattr(self, name)
+            ends = surface.section_ends(vertical=name not in TWO_SIDED)
+            start, given = surface.beam_starts_at_m, len(surface.elastic_axis)
+            crossed = sum(end > start for end in ends)
+            if crossed == 0:
+                raise ValueError(
+                    f"{name}.beam_starts_at_m: {start:g} is not allowed; allowed: up to {ends[-1]:g}"
+                )
+            if given not in (1, crossed + 1):
+                raise ValueError(
+                    f"{name}.elastic_axis: {given} values; allowed: one, or {crossed + 1}, one at the beam's "
+                    "start and one at the end of each section from there on"
+                )
+        return self
+
 
 class ControlSurface(Record):
     """A flap behind a hinge: `hinge` a fraction of the chord, `span` fractions of the surface's semi-span."""
 
     surface: str
-    hinge: Fraction
+    hinge: Annotated[float, Field(ge=0.0, lt=1.0)]
     span: tuple[Fraction, Fraction]
 
     @field_validator("surface")
@@ -124,6 +148,19 @@ class ControlSurfaces(Record):
     aileron: ControlSurface
     rudder: ControlSurface
     trimmed_surface: Literal["horizontal_tail"]
+
+    @model_validator(mode="after")
+    def _one_on_each_surface(self) -> Self:
+        owners: dict[str, str] = {}
+        for name in ("elevator", "aileron", "rudder"):
+            surface = getattr(self, name).surface
+            if surface in owners:
+                raise ValueError(
+                    f"{name}.surface: {surface} has the {owners[surface]} already; "
+                    "allowed: one control surface each"
+                )
+            owners[surface] = name
+        return self
 
     @field_validator("elevator", "aileron")
     @classmethod
@@ -171,10 +208,7 @@ class Aircraft(Record):
 
     @model_validator(mode="after")
     def _agrees_with_itself(self) -> Self:
-        wing = self.surfaces.wing
-        half = wing.root_m[1] + sum(
-            s.length_m * math.cos(math.radians(s.dihedral_deg)) for s in wing.sections
-        )
+        half = self.surfaces.wing.section_ends()[-1]
         if abs(2.0 * half - self.published.wing_span_m) > _SPAN_TOLERANCE_M:
             raise ValueError(
                 f"surfaces.wing.sections: span {2.0 * half:.6g} m, published.wing_span_m is "

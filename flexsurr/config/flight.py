@@ -9,7 +9,7 @@ from flexsurr.config.merging import Source, build
 from flexsurr.config.reading import read_yaml
 from flexsurr.config.schema import Record
 from flexsurr.config.structure import NotNegative, Positive
-from flexsurr.config.study import Count
+from flexsurr.config.study import Count, check_steps
 
 Control = Literal["elevator", "aileron", "rudder"]
 CONTROL_NAMES: tuple[Control, ...] = ("elevator", "aileron", "rudder")
@@ -86,6 +86,11 @@ class FlightSettings(Record):
     doublet_deg: Annotated[float, Field(gt=0.0, le=30.0)] = 5.0
     doublet: DoubletTimes = DoubletTimes()
     random_flights: RandomFlights = RandomFlights()
+
+    @model_validator(mode="after")
+    def _lasts_whole_steps(self) -> Self:
+        check_steps(self.duration_s, self.step_s)
+        return self
 
     @model_validator(mode="after")
     def _modes_are_there(self) -> Self:

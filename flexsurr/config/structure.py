@@ -51,6 +51,14 @@ class Structure(Record):
         for joint in self.joints:
             if self.section_stiffness(joint) is None:
                 raise ValueError(f"{STIFFNESS_KEY[joint]}: needed for the joint {joint!r}")
+        # An element's centre of gravity beside its axis resists torsion, but it rises in bending too: then
+        # there are more coordinates than ways for the masses to move.
+        offset_resists = self.centre_of_gravity_offset_m != 0.0 and "out_of_plane" not in self.joints
+        if "torsion" in self.joints and self.torsional_inertia_per_length_kg_m == 0.0 and not offset_resists:
+            raise ValueError(
+                "torsional_inertia_per_length_kg_m: 0.0 is not allowed with the joint 'torsion', which would "
+                "move no mass; allowed: more than 0"
+            )
         if abs(self.centre_of_gravity_offset_m) > self.chord_m:
             raise ValueError(
                 f"centre_of_gravity_offset_m: {self.centre_of_gravity_offset_m} lies beyond the chord "

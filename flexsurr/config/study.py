@@ -29,6 +29,9 @@ IntegratorMethod = Literal[
     "gauss_legendre_6",
     "radau_iia_5",
 ]
+WHOLE = 1e-6
+"""Of the number of steps in a duration, what decimal fractions may err by."""
+
 FIXED_STEP: tuple[IntegratorMethod, ...] = ("rk4", "dop853_fixed", "gauss_legendre_4", "gauss_legendre_6")
 
 
@@ -55,6 +58,16 @@ class Integrator(Record):
         settings = {"h": self.step_s, "rtol": self.rtol, "atol": self.atol}
         shown = ",".join(f"{name}={value:g}" for name, value in settings.items() if value is not None)
         return f"{self.method}({shown})" if shown else self.method
+
+
+def check_steps(duration_s: float, step_s: float, step: str = "step_s") -> None:
+    """ValueError unless a whole number of steps, one or more, makes `duration_s`; `step` is their key."""
+    count = duration_s / step_s
+    if round(count) < 1 or abs(count - round(count)) > WHOLE * count:
+        raise ValueError(
+            f"duration_s: {duration_s:g} is not allowed with {step}: {step_s:g}; allowed: a whole number of "
+            f"steps, such as {max(round(count), 1) * step_s:g}"
+        )
 
 
 class Reduction(Record):
@@ -98,6 +111,11 @@ class DatasetSettings(Record):
     training_fraction: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.8
     initial_conditions: InitialConditions = InitialConditions()
     integrator: Integrator = Integrator(method="dop853", rtol=1e-10, atol=1e-12)
+
+    @model_validator(mode="after")
+    def _lasts_whole_steps(self) -> Self:
+        check_steps(self.duration_s, self.step_s)
+        return self
 
     @property
     def shards(self) -> int:
@@ -167,6 +185,11 @@ class EvaluationSettings(Record):
         Integrator(method="gauss_legendre_6", step_s=5e-3),
         Integrator(method="radau_iia_5", rtol=1e-6, atol=1e-9),
     )
+
+    @model_validator(mode="after")
+    def _lasts_whole_steps(self) -> Self:
+        check_steps(self.duration_s, self.output_step_s, "output_step_s")
+        return self
 
     @model_validator(mode="after")
     def _the_load_begins_in_time(self) -> Self:

@@ -13,7 +13,7 @@ SHORT_S = 2.0
 
 @dataclass(frozen=True)
 class TipError:
-    """Largest tip errors in percent of the reference's largest tip displacement, and the phase lag [s].
+    """Largest errors of the tip's motion in percent of the reference's largest, and the phase lag [s].
 
     `phase_lag_s` is positive where the model is late; NaN where the numbers of oscillations differ.
     """
@@ -23,23 +23,24 @@ class TipError:
     phase_lag_s: float
 
 
-def tip_error_percent(reference: Reference, tip: Array) -> Array:
-    """‖tip − reference tip‖ over the reference's largest tip displacement, in percent, (k,).
+def tip_error_percent(reference: Reference, motion: Array) -> Array:
+    """‖motion − reference's motion‖ over the reference's largest displacement from rest, in percent, (k,).
 
-    `tip` (k, 3) [m] in the clamp's frame holds the first k ≤ m of the reference's sample times.
+    `motion` (k, 3) [m] in the clamp's frame or (k, 1) [rad], as `cases.tip_motion` has it, holds the first
+    k ≤ m of the reference's sample times.
     """
-    distance = np.linalg.norm(tip - reference.tip[: tip.shape[0]], axis=1)
-    return np.asarray(100.0 * distance / reference.peak_m)
+    distance = np.linalg.norm(motion - reference.motion[: motion.shape[0]], axis=1)
+    return np.asarray(100.0 * distance / reference.peak)
 
 
-def tip_error(reference: Reference, tip: Array) -> TipError:
-    """The largest errors of `tip` (m, 3) [m] over the whole response and over its first `SHORT_S`."""
-    error = tip_error_percent(reference, tip)
+def tip_error(reference: Reference, motion: Array) -> TipError:
+    """The largest errors of `motion` (as above) over the whole response and over its first `SHORT_S`."""
+    error = tip_error_percent(reference, motion)
     short = reference.t[: error.size] <= reference.t[0] + SHORT_S
     return TipError(
         whole_percent=float(error.max()),
         short_percent=float(error[short].max()),
-        phase_lag_s=phase_lag(reference.t[: error.size], tip[:, 2], reference.tip[: error.size, 2]),
+        phase_lag_s=phase_lag(reference.t[: error.size], motion[:, -1], reference.motion[: error.size, -1]),
     )
 
 

@@ -12,7 +12,14 @@ import pandas as pd
 from flexsurr.beam import ModalBasis, reduced_order
 from flexsurr.config.study import EvaluationSettings, Integrator, Study, Variant
 from flexsurr.evaluation.accuracy import tip_error
-from flexsurr.evaluation.cases import Reference, Response, evaluation_cases, reference_solutions, sample_times
+from flexsurr.evaluation.cases import (
+    Reference,
+    Response,
+    evaluation_cases,
+    reference_solutions,
+    sample_times,
+    tip_motion,
+)
 from flexsurr.evaluation.columns import COST_COLUMNS
 from flexsurr.evaluation.contenders import Contender, contenders
 from flexsurr.evaluation.energy import drift_percent, energy_error_percent
@@ -140,7 +147,7 @@ def _measure(
     )
     exact = reduced_order(basis, variant, "numpy")
     own = setup.contender.energy(trajectory.x)
-    error = tip_error(reference, exact.tip(trajectory.x))
+    error = tip_error(reference, tip_motion(exact, trajectory.x))
     free_from_s = reference.case.free_from_s
     return {
         "model": setup.contender.model,

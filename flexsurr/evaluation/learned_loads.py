@@ -24,6 +24,7 @@ from flexsurr.surrogates import LearnedMap, NetworkMap, PolynomialMap
 from flexsurr.training import fit_network_map, fit_polynomial_map
 
 AXES = "xyz"
+_ROUNDING = 1e-12  # generalised forces of less, beside what the load could do at most, are none
 AS_GOOD = 2.0  # even powers alone are kept if they err at most so much more
 
 
@@ -79,11 +80,15 @@ def learn_forces(
 ) -> LearnedForces:
     """The forced response's load, learned at `eta` (k, r); even powers alone where `held_out` (l, r) allows.
 
-    Raises ValueError where a coordinate or a generalised force does not vary over the samples.
+    Raises ValueError where a coordinate does not vary over the samples, or where the load moves no mode.
     """
     settings = evaluation.learned_load
     load = load_forces(basis.structure, evaluation.load)
     kinematics = learn_kinematics(basis, eta, settings.kinematics_degree)
+    size = np.linalg.norm(load.on_centres) + np.linalg.norm(load.on_tip)
+    reach = size * basis.structure.length_m * np.linalg.norm(basis.modes, 2)
+    if not np.max(np.abs(exact_forces(basis, load, held_out))) > _ROUNDING * reach:
+        raise ValueError(f"{basis.structure.name}: the load moves none of the {basis.modes.shape[1]} mode(s)")
     forces, expected = (kinematics.generalised_force(at, load) for at in (eta, held_out))
     names = tuple(f"Q{k + 1}" for k in range(eta.shape[1]))
     even, whole = (fit_polynomial_map(eta, forces, names, settings.degree, only) for only in (True, False))

@@ -14,6 +14,7 @@ from flexsurr.evaluation.cases import (
     free_cases,
     reference_solutions,
     sample_times,
+    tip_motion,
 )
 from flexsurr.evaluation.energy import energy_error_percent
 from flexsurr.simulation import simulate
@@ -33,8 +34,8 @@ def long_response_errors(
 ) -> dict[str, float | int | None]:
     """Errors of the surrogate's responses from where `references` (of `long_responses`) start.
 
-    Keys as in a run's metrics: long_response_error_percent_worst and _median (largest tip error over
-    the reference's largest tip displacement), energy_drift_percent (worst, of the reference's exact
+    Keys as in a run's metrics: long_response_error_percent_worst and _median (largest error of the
+    tip's motion over the reference's largest), energy_drift_percent (worst, of the reference's exact
     Hamiltonian along the surrogate's trajectory) and diverged, the number of responses that did not
     reach their end. A figure that has no finite value is None; a diverged response counts as the worst.
     """
@@ -44,7 +45,7 @@ def long_response_errors(
     for reference in references:
         trajectory = simulate(model, reference.t, reference.case.x0, study.evaluation.judging_integrator)
         if trajectory.completed:
-            errors.append(tip_error(reference, exact.tip(trajectory.x)).whole_percent)
+            errors.append(tip_error(reference, tip_motion(exact, trajectory.x)).whole_percent)
             drifts.append(energy_error_percent(basis.structure, reference, exact.energy(trajectory.x), 0.0))
         else:
             errors.append(math.inf)

@@ -27,10 +27,6 @@ class SurfaceLine:
         self.end = float(self._lengths[-1])
         axis = surface.elastic_axis
         stations = [self.start, *(length for length in self._lengths if length > self.start + 1e-9)]
-        if len(axis) not in (1, len(stations)):
-            raise ValueError(
-                f"elastic_axis: {len(axis)} values; allowed: one, or {len(stations)} from the beam's start on"
-            )
         self._axis_lengths = np.array(stations)
         self._axis = np.array(axis if len(axis) > 1 else axis * len(stations))
 

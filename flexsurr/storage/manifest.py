@@ -126,7 +126,8 @@ def build_manifest(
     """The manifest of the shards at `paths`, which all lie in one folder.
 
     Raises StorageError naming each shard that is damaged, belongs to another dataset than the one
-    described, or leaves a trajectory out or gives it twice.
+    described, or leaves a trajectory out or gives it twice; and each state or rate that does not vary over
+    the training samples, to which no error is relative.
     """
     if split_by == "sample":
         train = validation = tuple(range(trajectories))
@@ -160,6 +161,11 @@ def build_manifest(
         problems = _check_complete(entries, trajectories)
     if problems or states is None or moments is None:
         raise StorageError("\n".join(problems) or "a dataset without shards")
+    names = [*states.state_names, *(f"the rate of {name}" for name in states.state_names)]
+    if still := [
+        name for name, low, high in zip(names, moments.low, moments.high, strict=True) if low == high
+    ]:
+        raise StorageError(f"{paths[0].parent}: no training samples vary in {', '.join(still)}")
     return Manifest(
         folder=paths[0].parent,
         study=study,

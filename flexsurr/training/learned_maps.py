@@ -9,6 +9,7 @@ from flexsurr.training.levenberg_marquardt import LevenbergMarquardt
 from flexsurr.training.structured_normal_equations import CoefficientObjective
 from flexsurr.training.triangle import Triangle
 
+_ROUNDING = 1e-12  # an output that varies by less, beside the largest of all, is constant
 BLOCK = 4096  # samples at a time
 
 
@@ -44,14 +45,15 @@ def fit_network_map(
 ) -> NetworkMap:
     """Network of one hidden layer by Levenberg–Marquardt; `eta` (samples, r), `outputs` (samples, m).
 
-    Every output counts relative to its spread. Raises ValueError where a coordinate or an output does not
-    vary.
+    Every output counts relative to its spread; one that does not vary is a constant. Raises ValueError where
+    a coordinate is zero throughout.
     """
     scales = _reach(eta)
     mean, spread = np.mean(outputs, axis=0), np.std(outputs, axis=0)
-    if not np.all(spread > 0.0):
-        raise ValueError(f"output {output_names[int(np.argmin(spread))]} does not vary over the samples")
-    objective = CoefficientObjective.of(eta / scales, (outputs - mean) / spread, hidden, activation)
+    spread = np.where(spread > _ROUNDING * np.max(np.abs(outputs)), spread, 0.0)
+    targets = (outputs - mean) / np.where(spread > 0.0, spread, 1.0)
+    weights = np.full(spread.size, 1.0 / spread.size)
+    objective = CoefficientObjective.of(eta / scales, targets, hidden, activation, weights)
     generator = np.random.default_rng(seed)
     r, m = scales.size, spread.size
     start = [

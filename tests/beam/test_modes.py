@@ -5,6 +5,7 @@ from hypothesis import strategies as st
 from structures import ALL_JOINTS, CANTILEVER, SUBSETS, basis_of, change, structures, tip_force
 
 from flexsurr.beam import (
+    EquilibriumNotFound,
     find_equilibrium,
     full_order,
     mass_matrix,
@@ -83,7 +84,7 @@ def test_a_tip_load_shifts_the_frequencies():
 
 
 def test_compression_beyond_buckling_is_unstable():
-    with pytest.raises(ValueError, match="unstable"):
+    with pytest.raises(EquilibriumNotFound, match="unstable"):
         natural_modes(CANTILEVER, np.zeros(10), tip_force(-200.0, 0.0, 0.0))
 
 

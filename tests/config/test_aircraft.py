@@ -40,9 +40,19 @@ BAD_VALUES = [
     ("control_surfaces.aileron.span", [0.9, 0.7], ["control_surfaces.aileron", "0.9", "0.7"]),
     (
         "control_surfaces.aileron.hinge",
-        1.2,
-        ["control_surfaces.aileron.hinge", "1.2", "less than or equal to 1"],
+        1.0,
+        ["control_surfaces.aileron.hinge", "1.0", "less than 1"],
     ),
+    (
+        "control_surfaces.aileron.surface",
+        "horizontal_tail",
+        [
+            "control_surfaces: aileron.surface: horizontal_tail has the elevator already",
+            "one control surface",
+        ],
+    ),
+    ("surfaces.wing.elastic_axis", [0.3, 0.4], ["surfaces: wing.elastic_axis: 2 values", "one, or 3"]),
+    ("surfaces.vertical_tail.beam_starts_at_m", 99.0, ["vertical_tail.beam_starts_at_m: 99", "up to"]),
     ("mass.fuel_kg", 12000.0, ["mass", "56764", "55764"]),
     ("mass.fuel_kg", "eleven tons", ["mass.fuel_kg", "'eleven tons'", "number"]),
     ("mass.engine.mass_kg", -2900.0, ["mass.engine.mass_kg", "-2900.0", "greater than 0"]),

@@ -62,6 +62,15 @@ BAD_VALUES = [
     (STRUCTURE, "joints", [], ["joints", "at least one"]),
     (STRUCTURE, "joints", ["in_plain"], ["joints[0]", "'in_plain'", "did you mean 'in_plane'", "torsion"]),
     (STRUCTURE, "bending_stiffness_out_of_plane_N_m2", None, ["bending_stiffness_out_of_plane_N_m2: needed"]),
+    (
+        STRUCTURE,
+        "torsional_inertia_per_length_kg_m",
+        0.0,
+        ["torsional_inertia_per_length_kg_m", "joint 'torsion'", "more than 0"],
+    ),
+    (STUDY, "dataset.duration_s", 0.2005, ["dataset: duration_s: 0.2005", "step_s: 0.001", "such as 0.2"]),
+    (STUDY, "dataset.step_s", 0.5, ["dataset: duration_s: 0.2 ", "step_s: 0.5", "such as 0.5"]),
+    (STUDY, "evaluation.output_step_s", 0.7, ["evaluation: duration_s: 30 ", "output_step_s: 0.7", "30.1"]),
     (STUDY, "reduction.modes", 1000, ["reduction.modes", "1000", "allowed: 1 to"]),
     (STUDY, "reduction.modes", 0, ["reduction.modes", "0", "greater than or equal to 1"]),
     (STUDY, "structure", "config/structures/absent.yaml", ["structure", "absent.yaml", "no file"]),
@@ -132,6 +141,8 @@ BAD_VALUES = [
 
 @pytest.mark.parametrize(("file", "keys", "value", "words"), BAD_VALUES)
 def test_a_bad_value_is_refused_with_file_key_value_and_what_is_allowed(root, file, keys, value, words):
+    if "torsional" in keys:
+        spoil(root, STRUCTURE, "joints", ["out_of_plane", "torsion"])
     spoil(root, file, keys, value)
     message = refusal(root)
     assert all(word in message for word in [file, *words]), message

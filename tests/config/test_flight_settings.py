@@ -23,6 +23,8 @@ BAD_VALUES = [
     ("random_flights.least_deg", -1.0, ["random_flights.least_deg", "-1.0", "greater than or equal to 0"]),
     ("random_flights.mach", [0.6, 0.7], ["random_flights.mach", "unknown key"]),
     ("random_flights.of_each_doublet", 0, ["of_each_doublet", "0", "greater than or equal to 1"]),
+    ("step_s", 0.003, ["duration_s: 5 ", "step_s: 0.003", "such as 5.001"]),
+    ("step_s", 7.0, ["duration_s: 5 ", "step_s: 7", "such as 7"]),
     ("step_s", "fast", ["step_s", "'fast'", "number"]),
     ("aircraft", 7, ["aircraft", "7", "string"]),
 ]

@@ -18,7 +18,7 @@ def reference(amplitude_m: float = 0.5) -> Reference:
 
 def test_a_solution_has_no_error_against_itself():
     exact = reference()
-    error = tip_error(exact, exact.tip)
+    error = tip_error(exact, exact.motion)
     assert (error.whole_percent, error.short_percent, error.phase_lag_s) == (0.0, 0.0, 0.0)
 
 
@@ -26,12 +26,12 @@ def test_a_solution_has_no_error_against_itself():
 def test_a_shift_is_its_length_over_the_peak_whatever_its_direction(length_m, angle, peak_m):
     exact = reference(peak_m)
     shift = length_m * np.array([np.cos(angle), np.sin(angle), 0.0])
-    assert tip_error_percent(exact, exact.tip + shift) == pytest.approx(100.0 * length_m / peak_m)
+    assert tip_error_percent(exact, exact.motion + shift) == pytest.approx(100.0 * length_m / peak_m)
 
 
 def test_an_error_that_comes_late_is_not_in_the_first_seconds():
     exact = reference()
-    tip = exact.tip + np.where(T > 2.5, 0.1, 0.001)[:, None] * [0.0, 1.0, 0.0]
+    tip = exact.motion + np.where(T > 2.5, 0.1, 0.001)[:, None] * [0.0, 1.0, 0.0]
     error = tip_error(exact, tip)
     assert error.whole_percent == pytest.approx(20.0)
     assert error.short_percent == pytest.approx(0.2)
@@ -39,7 +39,7 @@ def test_an_error_that_comes_late_is_not_in_the_first_seconds():
 
 def test_a_trajectory_that_ends_early_is_judged_up_to_its_end():
     exact = reference()
-    tip = exact.tip[:100] + np.array([0.0, 0.0, 0.05])
+    tip = exact.motion[:100] + np.array([0.0, 0.0, 0.05])
     assert tip_error_percent(exact, tip).shape == (100,)
     assert tip_error(exact, tip).whole_percent == pytest.approx(10.0)
 

@@ -2,9 +2,12 @@
 
 import numpy as np
 import pytest
+from conftest import TIGHT
 
-from flexsurr.beam import draw_initial_conditions, reduced_order
+from flexsurr.beam import draw_initial_conditions, reduce, reduced_order
 from flexsurr.config.load import TipForce
+from flexsurr.config.structure import Structure
+from flexsurr.evaluation.accuracy import tip_error
 from flexsurr.evaluation.cases import (
     FIRST_EVALUATION_CASE,
     FIRST_SELECTION_CASE,
@@ -64,9 +67,44 @@ def test_the_reference_conserves_energy_far_below_what_tables_show(study, basis)
     solution = reference_solution(basis, "hamiltonian", case, t, tight)
     energy = reduced_order(basis, "hamiltonian", "numpy").energy(solution.x)
     assert np.ptp(energy) < 1e-9 * energy[0]
-    assert np.linalg.norm(solution.tip - [1.0, 0.0, 0.0], axis=1).max() == pytest.approx(solution.peak_m)
+    assert np.linalg.norm(solution.motion - [1.0, 0.0, 0.0], axis=1).max() == pytest.approx(solution.peak)
 
 
 def test_sample_times_hold_both_ends():
     assert sample_times(0.3, 0.1) == pytest.approx([0.0, 0.1, 0.2, 0.3])
     assert sample_times(0.05, 0.1) == pytest.approx([0.0, 0.05])
+
+
+ROD = Structure(
+    name="rod",
+    length_m=1.0,
+    elements=4,
+    joints=("torsion",),
+    mass_per_length_kg_m=0.2,
+    torsional_stiffness_N_m2=5.0,
+    torsional_inertia_per_length_kg_m=0.01,
+)
+SOFT_IN_TORSION = {"bending_stiffness_out_of_plane_N_m2": 1e4, "joints": ("out_of_plane", "torsion")}
+
+
+@pytest.mark.parametrize("more", [{}, SOFT_IN_TORSION])
+def test_what_only_twists_is_judged_by_its_twist(study, more):
+    """A rod, or the torsional mode of a beam that could bend: its tip stays where it is."""
+    structure = Structure.model_validate(ROD.model_dump() | more)
+    basis = reduce(structure, study.reduction)
+    case = evaluation_cases(basis, study, "free")[0]
+    solution = reference_solution(basis, "hamiltonian", case, sample_times(0.1, 0.01), TIGHT)
+    model = reduced_order(basis, "hamiltonian", "numpy")
+    assert solution.motion.shape == (11, 1)
+    assert solution.motion[:, 0] == pytest.approx(model.twist(solution.x))
+    assert tip_error(solution, solution.motion).whole_percent == 0.0
+    assert tip_error(solution, solution.motion + 0.1 * solution.peak).whole_percent == pytest.approx(10.0)
+
+
+def test_a_reference_that_stays_at_rest_judges_nothing(study):
+    """A load across the plane of the softest mode, of a beam whose joints feel it."""
+    values = ROD.model_dump() | SOFT_IN_TORSION
+    basis = reduce(Structure.model_validate(values), study.reduction)
+    case = evaluation_cases(basis, study, "forced")[0]
+    with pytest.raises(ArithmeticError, match="the load moves none of the modes"):
+        reference_solution(basis, "hamiltonian", case, sample_times(0.1, 0.01), TIGHT)
