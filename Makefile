@@ -44,7 +44,7 @@ test: check browser
 
 ui: $(INSTALLED)
 	@test -f results/mlflow/mlflow.db || { echo "no runs yet: make reproduce first"; exit 1; }
-	mlflow ui --backend-store-uri sqlite:///$(CURDIR)/results/mlflow/mlflow.db --host 127.0.0.1 --port $(PORT)
+	mlflow ui --backend-store-uri "sqlite:///$(CURDIR)/results/mlflow/mlflow.db" --host 127.0.0.1 --port $(PORT)
 
 benchmark: $(INSTALLED)
 	@for script in $$(grep -l __main__ benchmarks/*.py); do \

@@ -1,12 +1,15 @@
 """All configuration of one invocation: config/config.yaml, and the files it leads to, checked together."""
 
+import os
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
-from pydantic import Field
+from pydantic import Field, field_validator, model_validator
 
+from flexsurr.config.airliner import STUDY as AIRLINER
 from flexsurr.config.airliner import AirlinerFiles
 from flexsurr.config.errors import ConfigurationError
 from flexsurr.config.load import check_load
@@ -19,11 +22,23 @@ from flexsurr.config.sweep import Sweep
 
 STUDIES = "config/studies"
 
+STORES = ("http", "https", "sqlite", "postgresql", "mysql", "mssql")
+"""Kinds of stores of runs: the scheme of an address, which may name a driver too (`mysql+pymysql`)."""
+
 
 class Tracking(Record):
     """Where runs are recorded for the page on which they are compared."""
 
     uri: str | None = None
+
+    @field_validator("uri")
+    @classmethod
+    def _is_an_address(cls, uri: str | None) -> str | None:
+        scheme, separator, rest = (uri or "sqlite:///-").partition("://")
+        if scheme.partition("+")[0] not in STORES or not separator or not rest:
+            allowed = ", ".join(f"{store}://…" for store in STORES)
+            raise ValueError(f"no address of a store; allowed: {allowed}, or nothing")
+        return uri
 
 
 class Timing(Record):
@@ -35,7 +50,8 @@ class Timing(Record):
 class Settings(Record):
     """config/config.yaml. `overrides` holds values that replace those of a study's file.
 
-    Without an `airliner` nothing of it is run.
+    `results` may begin with ~ and hold variables of the environment. Without an `airliner` nothing of it is
+    run.
     """
 
     results: Annotated[str, Field(min_length=1)] = "results"
@@ -44,6 +60,33 @@ class Settings(Record):
     timing: Timing = Timing()
     overrides: dict[str, dict[str, Any]] = Field(default_factory=dict)
     airliner: AirlinerFiles | None = None
+
+    @field_validator("results")
+    @classmethod
+    def _is_a_folder(cls, results: str) -> str:
+        """The path with ~ and variables replaced. Braces would be wildcards in the rules, and - an option."""
+        path = os.path.normpath(os.path.expanduser(os.path.expandvars(results)))
+        if set(path) & set("{}$\n") or path.startswith(("-", "~")):
+            raise ValueError("no folder; allowed: a path without braces, ~user or unknown $VARIABLE")
+        if path == os.curdir:
+            raise ValueError("the project's own folder; allowed: one below it, or elsewhere")
+        return path
+
+    @field_validator("studies")
+    @classmethod
+    def _have_names(cls, studies: tuple[str, ...]) -> tuple[str, ...]:
+        for name in studies:
+            if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_-]*", name):
+                raise ValueError(f"{name!r} is no name; allowed: letters, digits, underscores and hyphens")
+        if len(set(studies)) != len(studies):
+            raise ValueError("each at most once")
+        return studies
+
+    @model_validator(mode="after")
+    def _names_are_free(self) -> Self:
+        if self.airliner is not None and AIRLINER in self.studies:
+            raise ValueError(f"studies: {AIRLINER!r} is what the airliner is called; another name is needed")
+        return self
 
 
 @dataclass(frozen=True)
@@ -80,6 +123,8 @@ def load(root: Path, files: Sequence[str], effective: Mapping[str, Any] | None =
             sources.append(Source("--config", added))
     settings = build(Settings, sources)
     problems: list[str] = []
+    if unusable := _unusable(root / settings.results):
+        problems.append(f"{_holder(sources, ('results',))}: results: {settings.results!r} {unusable}")
     studies = []
     for name in settings.studies:
         try:
@@ -95,6 +140,14 @@ def load(root: Path, files: Sequence[str], effective: Mapping[str, Any] | None =
     if problems:
         raise ConfigurationError(dict.fromkeys(problems))
     return Configuration(settings, tuple(studies))
+
+
+def _unusable(folder: Path) -> str:
+    """Why nothing can be written below `folder`, or nothing."""
+    there = next(path for path in (folder, *folder.parents) if path.exists())
+    if not there.is_dir():
+        return f"is no folder: {there} is a file"
+    return "" if os.access(there, os.W_OK | os.X_OK) else f"is out of reach: {there} may not be written to"
 
 
 def _load_study(root: Path, name: str, sources: Sequence[Source]) -> ResolvedStudy:

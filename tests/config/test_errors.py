@@ -47,6 +47,17 @@ BAD_VALUES = [
     (CONFIG, "resutls", "x", ["resutls", "'x'", "did you mean 'results'", "tracking"]),
     (CONFIG, "studies", [], ["studies", "[]", "at least one value"]),
     (CONFIG, "studies", ["cantilver"], ["studies", "'cantilver'", "allowed: cantilever"]),
+    (CONFIG, "studies", ["soft beam"], ["studies", "'soft beam' is no name", "hyphens"]),
+    (CONFIG, "studies", ["-x"], ["studies", "'-x' is no name", "hyphens"]),
+    (CONFIG, "studies", ["wing", "wing"], ["studies", "at most once"]),
+    (CONFIG, "results", "out{1}", ["results", "'out{1}'", "without braces"]),
+    (CONFIG, "results", "${ABSENT}/out", ["results", "'${ABSENT}/out'", "unknown $VARIABLE"]),
+    (CONFIG, "results", "~no-such-user/out", ["results", "'~no-such-user/out'", "~user"]),
+    (CONFIG, "results", "-out", ["results", "'-out'", "no folder"]),
+    (CONFIG, "results", "out/..", ["results", "'out/..'", "the project's own folder"]),
+    (CONFIG, "results", CONFIG, ["results", "is no folder", "is a file"]),
+    (CONFIG, "tracking.uri", "127.0.0.1:5000", ["tracking.uri", "'127.0.0.1:5000'", "http://"]),
+    (CONFIG, "tracking.uri", "http:/", ["tracking.uri", "'http:/'", "sqlite://"]),
     (CONFIG, "timing.cores", 0, ["timing.cores", "0", "greater than or equal to 1"]),
     (CONFIG, "overrides.wnig", {"seed": 1}, ["overrides.wnig", "no such study", "cantilever, wing"]),
     (CONFIG, "overrides.cantilever.sede", 1, ["overrides.cantilever.sede", "1", "did you mean 'seed'"]),
@@ -159,12 +170,45 @@ def test_a_bad_value_is_refused_with_file_key_value_and_what_is_allowed(root, fi
         ("just words", ["'just words'", "keys with values"]),
         ("", ["None", "keys with values"]),
         ("seed: 1\nseed: 2", ["line 2", "'seed' is given twice"]),
+        ("elements: 010", ["line 1", "010 is no decimal number"]),
+        ("elements: 1:10", ["line 1", "1:10 is no decimal number"]),
+        ("length_m: -1:30.5", ["line 1", "-1:30.5 is no decimal number"]),
+        ("name: !!python/name:os.system x", ["line 1", "is not YAML", "tag"]),
+        ("seed: 1\n---\nseed: 2", ["line 2", "single document"]),
+        ("seed: " + "9" * 5000, ["is not YAML", "digits"]),
     ],
 )
 def test_a_file_that_is_not_what_it_should_be_is_named(root, file, content, words):
     (root / file).write_text(content + "\n")
     message = refusal(root)
     assert all(word in message for word in [file, *words]), message
+
+
+def test_a_byte_order_mark_and_numbers_that_yaml_takes_for_text_are_read_as_they_look(root):
+    path = root / STRUCTURE
+    text = path.read_text().replace("mass_per_length_kg_m: 0.2", "mass_per_length_kg_m: 2e-1")
+    path.write_text("\ufeff" + text)
+    (study, *_) = load(root, [CONFIG]).studies
+    assert study.structure.mass_per_length_kg_m == 0.2
+
+
+@pytest.mark.parametrize("results", ["~/out", "${HOME}/out", "$HOME/in/../out"])
+def test_results_may_lie_at_home_and_where_variables_say(root, monkeypatch, results):
+    monkeypatch.setenv("HOME", str(root))
+    spoil(root, CONFIG, "results", results)
+    assert load(root, [CONFIG]).settings.results == f"{root}/out"
+
+
+def test_results_where_nothing_may_be_written_are_refused(root, monkeypatch):
+    monkeypatch.setattr("os.access", lambda path, mode: False)
+    assert "results: 'results' is out of reach" in refusal(root)
+
+
+def test_a_study_may_have_hyphens_in_its_name(root):
+    shutil.copy(root / STUDY, root / "config/studies/soft-beam.yaml")
+    spoil(root, CONFIG, "studies", ["soft-beam"])
+    plan = Plan(load(root, [CONFIG]))
+    assert plan.simulate("soft-beam", "hamiltonian", 0)["study"] == "soft-beam"
 
 
 def test_binary_rubbish_is_named(root):

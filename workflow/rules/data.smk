@@ -2,7 +2,7 @@
 
 
 wildcard_constraints:
-    study="[A-Za-z0-9_]+",
+    study="|".join(STUDIES),
     variant="hamiltonian|as_printed",
     data=r"(hamiltonian|as_printed)(-\w+)?",
     response="free|forced",

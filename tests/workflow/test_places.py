@@ -1,0 +1,44 @@
+"""Names with hyphens, and folders with spaces in their names."""
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+RECORDER = '#!/bin/sh\nprintf "%s\\n" "$@" >> "$(dirname "$0")/arguments"\n'
+
+
+def test_a_study_with_a_hyphen_in_folders_with_spaces(make_project):
+    project = make_project()
+    project.root = project.root.rename(project.root.with_name("a project"))
+    shutil.copy(
+        project.root / "config/studies/cantilever.yaml", project.root / "config/studies/soft-beam.yaml"
+    )
+    project.change("config/config.yaml", "studies", ["soft-beam"])
+    project.change("config/config.yaml", "results", "my results")
+    project.change("config/config.yaml", "airliner", None)
+    project.change("config/presets/quick.yaml", "airliner", None)
+    project.run_well("my results/evaluation/soft-beam/statics.parquet")
+    assert (project.root / "my results/evaluation/soft-beam/statics.parquet").is_file()
+
+
+@pytest.mark.parametrize(
+    ("target", "tool", "argument"),
+    [("ui", "mlflow", "sqlite:///{root}/results/mlflow/mlflow.db"), ("reproduce", "snakemake", "--cores")],
+)
+def test_make_in_a_folder_with_spaces(tmp_path, target, tool, argument):
+    """What make runs is recorded in place of the tool itself, an argument a line."""
+    root = tmp_path / "a project"
+    tools = root / ".venv/bin"
+    tools.mkdir(parents=True)
+    (root / "results/mlflow").mkdir(parents=True)
+    (root / "results/mlflow/mlflow.db").touch()
+    for name in ("Makefile", "environment.txt", "pyproject.toml"):
+        shutil.copy(REPOSITORY / name, root)
+    (tools / tool).write_text(RECORDER)
+    (tools / tool).chmod(0o755)
+    (root / ".venv/.installed").touch()
+    subprocess.run(["make", target], cwd=root, check=True, capture_output=True, timeout=60)
+    assert argument.format(root=root) in (tools / "arguments").read_text().splitlines()
