@@ -1,22 +1,29 @@
 """Create the tracking store, once and before anything writes to it."""
 
+import logging
 from pathlib import Path
 
 from flexsurr.cli.command import Job, command
 from flexsurr.training.tracking import create_store, store_uri, write_store
 
+log = logging.getLogger(__name__)
+
 
 def main(job: Job, output: Path) -> None:
     """Create the store of the job beside `output`, and write there how to reach it.
 
-    A store that cannot be reached is a warning: nothing is written, and results are made without it.
+    A store that cannot be reached is a warning: nothing is written, and results are made without it. So is a
+    folder that cannot be written to, of which the first job will have more to say.
     """
     folder = output.parent
     store = create_store(store_uri(job["uri"], folder), folder, job["studies"])
-    if store is None:
-        output.unlink(missing_ok=True)
-    else:
-        write_store(output, store)
+    try:
+        if store is None:
+            output.unlink(missing_ok=True)
+        else:
+            write_store(output, store)
+    except OSError as error:
+        log.warning("tracking: %s: %s; results are made without it", output, error.strerror)
 
 
 if __name__ == "__main__":

@@ -9,27 +9,30 @@ import json
 import logging
 import math
 import os
+import re
 import signal
+import sqlite3
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
 # Before the import. MLflow reports its use to its makers otherwise, and waits minutes for a dead server.
 os.environ.setdefault("MLFLOW_DISABLE_TELEMETRY", "true")
-os.environ.setdefault("MLFLOW_HTTP_REQUEST_MAX_RETRIES", "2")
-os.environ.setdefault("MLFLOW_HTTP_REQUEST_TIMEOUT", "20")
+os.environ.setdefault("MLFLOW_HTTP_REQUEST_MAX_RETRIES", "1")
+os.environ.setdefault("MLFLOW_HTTP_REQUEST_TIMEOUT", "5")
 
 from mlflow import MlflowClient
-from mlflow.entities import Metric, Param, Run, RunTag
+from mlflow.entities import LifecycleStage, Metric, Param, Run, RunTag
 from mlflow.utils.mlflow_tags import MLFLOW_PARENT_RUN_ID, MLFLOW_RUN_NAME
 
 from flexsurr.storage import write_json
 
 log = logging.getLogger(__name__)
+logging.getLogger("urllib3").setLevel(logging.ERROR)  # a server that is away is our own warning
 
 RUN_KEY = "flexsurr.run_id"  # the tag by which a trial is found again
 SWEEP = "flexsurr.sweep"  # marks the parent run of a study's sweeps
@@ -37,6 +40,8 @@ REASON = "reason"
 BATCH = 1000  # MLflow takes no more metrics at once
 LONGEST_WAIT_S = 10.0  # between batches, so that a person can watch
 LONGEST_PARAMETER = 500
+LONGEST_REASON = 300  # of a warning's
+PLACES = {"experiments": "artifact_location", "runs": "artifact_uri", "logged_models": "artifact_location"}
 
 
 @dataclass(frozen=True)
@@ -100,23 +105,33 @@ def read_store(path: Path) -> Store | None:
     """The store that `write_store` wrote to `path`; None, and a warning, where there is none to be read."""
     try:
         values = json.loads(path.read_text(encoding="utf-8"))
-        return Store(**{**values, "uri": store_uri(values["uri"], path.parent)})
+        store = Store(**{**values, "uri": store_uri(values["uri"], path.parent)})
+        if not isinstance(store.uri, str):
+            raise TypeError(f"the address {store.uri!r}")
+        return store
     except (OSError, ValueError, TypeError, KeyError) as error:
-        log.warning("tracking: %s: no store (%s); results are made without it", path, error)
+        _warn(f"{path}: no store", error)
         return None
+
+
+def _warn(what: str, error: Exception) -> None:
+    reason = " ".join(f"{type(error).__name__}: {error}".split())[:LONGEST_REASON]
+    without_secrets = re.sub(r"://[^/@ ]*@", "://…@", f"{what} ({reason})")
+    log.warning("tracking: %s; results are made without it", without_secrets)
 
 
 def create_store(uri: str, folder: Path, studies: Sequence[str]) -> Store | None:
     """Create the store, or what is missing in it; two processes must not do this at once.
 
-    Artefacts of a local store go into `folder`; a server keeps them as it likes. None, and a warning, where
-    the store cannot be reached.
+    Artefacts of a local store go into `folder`, and are looked for there where it has moved; a server keeps
+    them as it likes. An experiment that was deleted on the page is restored. None, and a warning, where the
+    store cannot be reached.
     """
     try:
         return _created(uri, folder, studies)
     # The server may be away, the database foreign or read-only: nothing of it is worth a result.
     except Exception as error:
-        log.warning("tracking: %s: %s: %s; results are made without it", uri, type(error).__name__, error)
+        _warn(f"{uri} is out of reach", error)
         return None
 
 
@@ -127,11 +142,16 @@ def _created(uri: str, folder: Path, studies: Sequence[str]) -> Store:
     experiments, parents = {}, {}
     for study in studies:
         experiment = client.get_experiment_by_name(study)
-        if experiment is not None:
-            experiments[study] = experiment.experiment_id
-        else:
-            place = (folder.absolute() / "artifacts" / study).as_uri() if local else None
+        place = (folder.absolute() / "artifacts" / study).as_uri() if local else None
+        if experiment is None:
             experiments[study] = client.create_experiment(study, artifact_location=place)
+        else:
+            experiments[study] = experiment.experiment_id
+            if experiment.lifecycle_stage != LifecycleStage.ACTIVE:
+                log.warning("tracking: the experiment %s had been deleted on the page; it is restored", study)
+                client.restore_experiment(experiment.experiment_id)
+            if uri == store_uri(None, folder) and place and experiment.artifact_location != place:
+                _move_artefacts(database(folder), experiment.artifact_location, place)
         found = client.search_runs([experiments[study]], f"tags.`{SWEEP}` = '{study}'", max_results=1)
         if found:
             parents[study] = found[0].info.run_id
@@ -141,6 +161,15 @@ def _created(uri: str, folder: Path, studies: Sequence[str]) -> Store:
             )
             parents[study] = run.info.run_id
     return Store(uri, experiments, parents)
+
+
+def _move_artefacts(path: Path, old: str, new: str) -> None:
+    """Have the database look for artefacts below `new` instead of `old`; MLflow itself knows no such move."""
+    with closing(sqlite3.connect(path)) as connection, connection:
+        for table, column in PLACES.items():
+            moved = f"UPDATE {table} SET {column} = ? || substr({column}, ?)"
+            which = f"WHERE {column} = ? OR {column} LIKE ?"
+            connection.execute(f"{moved} {which}", (new, len(old) + 1, old, f"{old}/%"))
 
 
 @contextmanager
@@ -232,12 +261,13 @@ class _Page:
             return action(self._client, self._store)
         # The database may be deleted, locked or full, the server away: nothing of it is worth a result.
         except Exception as error:
-            self._warn(error)
+            _warn(f"trouble with {self._store.uri}", error)
+            self._client = None
             return None
 
     def insist(self, action: Callable[[MlflowClient, Store], Any]) -> Any:
-        """`attempt`, once more even after trouble."""
-        if self._client is None:
+        """`attempt`, once more even after trouble with a file; a server is not waited for twice."""
+        if self._client is None and self._store is not None and self._store.uri.startswith("sqlite:"):
             self._connect()
         return self.attempt(action)
 
@@ -253,11 +283,7 @@ class _Page:
         try:
             self._client = MlflowClient(uri)
         except Exception as error:  # as above
-            self._warn(error)
-
-    def _warn(self, error: Exception) -> None:
-        log.warning("tracking: %s: %s; results are made without it", type(error).__name__, error)
-        self._client = None
+            _warn(f"{uri} is out of reach", error)
 
 
 def _start(

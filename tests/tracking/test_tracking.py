@@ -1,8 +1,11 @@
 import logging
 import os
+import shutil
 import signal
+import socket
 import sqlite3
 import sys
+from contextlib import closing
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -144,6 +147,85 @@ def test_a_store_is_found_again_where_its_folder_has_moved_to(tmp_path):
     server = Store("http://127.0.0.1:5000", {}, {})
     write_store(new / "store.json", server)
     assert read_store(new / "store.json") == server
+
+
+def copied(store: Store, folder: Path) -> str:
+    """The address of a copy of the store's database in `folder`, as a copied or moved folder has it."""
+    folder.mkdir()
+    shutil.copy(store.uri.removeprefix("sqlite:///"), database(folder))
+    return store_uri(None, folder)
+
+
+def test_an_experiment_deleted_on_the_page_is_restored(made, tmp_path, caplog):
+    uri = copied(made, tmp_path / "mlflow")
+    MlflowClient(uri).delete_experiment(made.experiments["wing"])
+    gone = Store(uri, made.experiments, made.parents)
+    with caplog.at_level(logging.WARNING), tracked(gone, "wing", "hnn-8", {}) as trial:
+        trial.epoch(0, 1.0, 1.0)
+    assert "results are made without it" in caplog.text
+    again = create_store(uri, tmp_path / "mlflow", ["cantilever", "wing"])
+    assert "wing had been deleted on the page; it is restored" in caplog.text
+    with tracked(again, "wing", "hnn-8", {}):
+        pass
+    assert run_of(again, "hnn-8", "wing").info.status == "FINISHED"
+
+
+def test_artefacts_are_found_and_kept_where_the_folder_has_moved_to(made, tmp_path):
+    weights = tmp_path / "weights.npz"
+    weights.write_bytes(b"weights")
+    with tracked(made, "cantilever", "hnn-9", {}) as trial:
+        trial.keep({}, {}, [weights])
+    old = Path(made.uri.removeprefix("sqlite:///")).parent
+    uri = copied(made, tmp_path / "mlflow")
+    shutil.copytree(old / "artifacts", tmp_path / "mlflow/artifacts")
+    moved = create_store(uri, tmp_path / "mlflow", ["cantilever", "wing"])
+    with tracked(moved, "cantilever", "hnn-10", {}) as trial:
+        trial.keep({}, {}, [weights])
+    client = MlflowClient(uri)
+    for key in ("hnn-9", "hnn-10"):
+        run = run_of(moved, key)
+        assert run.info.artifact_uri.startswith((tmp_path / "mlflow/artifacts/cantilever").as_uri())
+        assert [file.path for file in client.list_artifacts(run.info.run_id)] == ["weights.npz"]
+
+
+def test_a_store_of_another_schema_is_one_warning(made, tmp_path, caplog):
+    uri = copied(made, tmp_path / "mlflow")
+    with closing(sqlite3.connect(database(tmp_path / "mlflow"))) as connection, connection:
+        connection.execute("UPDATE alembic_version SET version_num = 'another'")
+    with caplog.at_level(logging.WARNING):
+        assert create_store(uri, tmp_path / "mlflow", ["cantilever"]) is None
+    (record,) = caplog.records
+    assert "another" in record.getMessage()
+    assert len(record.getMessage().splitlines()) == 1
+
+
+def test_a_server_that_never_answers_is_asked_once(tmp_path, monkeypatch, caplog):
+    monkeypatch.setenv("MLFLOW_HTTP_REQUEST_TIMEOUT", "1")
+    monkeypatch.setenv("MLFLOW_HTTP_REQUEST_MAX_RETRIES", "0")
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        uri = f"http://user:secret@127.0.0.1:{server.getsockname()[1]}"
+        store = Store(uri, {"cantilever": "1"}, {"cantilever": "x"})
+        with caplog.at_level(logging.WARNING), tracked(store, "cantilever", "hnn-1", {}) as trial:
+            for epoch in range(5):
+                trial.epoch(epoch, 1.0, 1.0)
+                trial.send()
+            trial.keep({"train_nmse": 1.0}, {}, [])
+        server.setblocking(False)
+        server.accept()[0].close()
+        with pytest.raises(BlockingIOError):
+            server.accept()
+    assert caplog.text.count("results are made without it") == 1
+    assert "secret" not in caplog.text
+
+
+@pytest.mark.parametrize("content", ["{", "[]", '{"uri": 7}', '{"uri": 7, "experiments": 1, "parents": 2}'])
+def test_a_damaged_address_of_the_store_is_a_warning(tmp_path, caplog, content):
+    (tmp_path / "store.json").write_text(content)
+    with caplog.at_level(logging.WARNING):
+        store = read_store(tmp_path / "store.json")
+        with tracked(store, "cantilever", "hnn-1", {}) as trial:
+            trial.epoch(0, 1.0, 1.0)
+    assert "results are made without it" in caplog.text
 
 
 def test_creating_the_store_again_changes_nothing(made):
