@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from conftest import TIGHT
 
 from flexsurr.beam import draw_initial_conditions, reduce, reduced_order
 from flexsurr.config.load import TipForce
@@ -93,7 +92,8 @@ def test_what_only_twists_is_judged_by_its_twist(study, more):
     structure = Structure.model_validate(ROD.model_dump() | more)
     basis = reduce(structure, study.reduction)
     case = evaluation_cases(basis, study, "free")[0]
-    solution = reference_solution(basis, "hamiltonian", case, sample_times(0.1, 0.01), TIGHT)
+    tight = study.evaluation.reference_integrator
+    solution = reference_solution(basis, "hamiltonian", case, sample_times(0.1, 0.01), tight)
     model = reduced_order(basis, "hamiltonian", "numpy")
     assert solution.motion.shape == (11, 1)
     assert solution.motion[:, 0] == pytest.approx(model.twist(solution.x))
@@ -106,5 +106,6 @@ def test_a_reference_that_stays_at_rest_judges_nothing(study):
     values = ROD.model_dump() | SOFT_IN_TORSION
     basis = reduce(Structure.model_validate(values), study.reduction)
     case = evaluation_cases(basis, study, "forced")[0]
+    tight = study.evaluation.reference_integrator
     with pytest.raises(ArithmeticError, match="the load moves none of the modes"):
-        reference_solution(basis, "hamiltonian", case, sample_times(0.1, 0.01), TIGHT)
+        reference_solution(basis, "hamiltonian", case, sample_times(0.1, 0.01), tight)
