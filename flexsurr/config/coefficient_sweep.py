@@ -1,14 +1,10 @@
-"""What is learned of the airliner's aerodynamics, and from how many samples (config/sweeps/airliner.yaml)."""
+"""What is learned of the airliner's aerodynamics (config/sweeps/airliner.yaml)."""
 
-from pathlib import Path
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, field_validator, model_validator
 
 from flexsurr.config.activation import Activation
-from flexsurr.config.merging import Source, build
-from flexsurr.config.panels import PanelCounts
-from flexsurr.config.reading import read_yaml
 from flexsurr.config.schema import Record
 from flexsurr.config.structure import Positive
 from flexsurr.config.study import Count
@@ -89,26 +85,9 @@ class CoefficientSpace(Record):
     seed: Annotated[tuple[Seed, ...], Field(min_length=1)] = (0,)
 
 
-class SampleSettings(Record):
-    """How many samples, of which `held_out` are kept to validate on, in how many shards."""
-
-    samples: Count = 4096
-    samples_per_shard: Count = 512
-    held_out: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.2
-    seed: Seed = 2024
-    boundary_condition: Literal["exact", "linear"] = "exact"
-    panels: PanelCounts = PanelCounts()
-
-    @property
-    def shards(self) -> int:
-        """Number of shards; the last may hold fewer samples."""
-        return -(-self.samples // self.samples_per_shard)
-
-
 class CoefficientSweep(Record):
-    """Samples and what is fitted to them."""
+    """What is fitted to the samples."""
 
-    dataset: SampleSettings = SampleSettings()
     spaces: Annotated[tuple[CoefficientSpace, ...], Field(min_length=1)]
 
     @field_validator("spaces")
@@ -117,12 +96,3 @@ class CoefficientSweep(Record):
         if all(space.model != "network" for space in spaces):
             raise ValueError("none of them is of a network; one is needed to fly with")
         return spaces
-
-
-def load_coefficient_sweep(path: Path, shown: str | None = None) -> CoefficientSweep:
-    """The sweep of the YAML file at `path`, named `shown` in errors.
-
-    Raises ConfigurationError with one line a mistake: file, key, value and what is allowed.
-    """
-    name = shown or str(path)
-    return build(CoefficientSweep, [Source(name, read_yaml(path, name))])

@@ -1,12 +1,9 @@
-"""How the airliner is flown: trim, manoeuvres, and the simulations it is judged by (config/flight/*.yaml)."""
+"""How the airliner is flown: trim, manoeuvres, and the simulations it is judged by (a study's `flight`)."""
 
-from pathlib import Path
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, field_validator, model_validator
 
-from flexsurr.config.merging import Source, build
-from flexsurr.config.reading import read_yaml
 from flexsurr.config.schema import Record
 from flexsurr.config.structure import NotNegative, Positive
 from flexsurr.config.study import Count, check_steps
@@ -74,7 +71,6 @@ class RandomFlights(Record):
 class FlightSettings(Record):
     """Everything about the airliner's flights that is not the aircraft."""
 
-    aircraft: str
     elastic_modes: Annotated[int, Field(ge=1, le=30)] = 8
     aerodynamic_modes: Annotated[tuple[Count, ...], Field(min_length=1, max_length=6)] = (1, 2, 5, 6, 7, 8)
     condition: FlightCondition = FlightCondition(mach=0.7, altitude_m=10000.0)
@@ -103,12 +99,3 @@ class FlightSettings(Record):
         if len(set(self.aerodynamic_modes)) != len(self.aerodynamic_modes):
             raise ValueError("aerodynamic_modes: each mode at most once")
         return self
-
-
-def load_flight(path: Path, shown: str | None = None) -> FlightSettings:
-    """The settings of the YAML file at `path`, named `shown` in errors.
-
-    Raises ConfigurationError with one line a mistake: file, key, value and what is allowed.
-    """
-    name = shown or str(path)
-    return build(FlightSettings, [Source(name, read_yaml(path, name))])

@@ -221,6 +221,7 @@ class Study(Record):
     natural frequencies are tabulated beside those of the study's own.
     """
 
+    source: Literal["trajectories"] = "trajectories"
     structure: str
     frequencies_also_of: tuple[str, ...] = ()
     sweeps: Annotated[dict[str, str], Field(min_length=1)]

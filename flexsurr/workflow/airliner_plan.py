@@ -3,12 +3,12 @@
 import hashlib
 import json
 from functools import cached_property
-from pathlib import Path
 from typing import Any, get_args
 
-from flexsurr.config.airliner import STUDY, Airliner, AirlinerFiles, load_airliner
 from flexsurr.config.coefficient_sweep import CoefficientTrial, LatticeForm, Sampling, dataset_name
 from flexsurr.config.errors import ConfigurationError
+from flexsurr.config.sources import ResolvedSampleStudy
+from flexsurr.config.study import DEFAULT
 from flexsurr.training.coefficient_sweep import coefficient_run_id, expand_coefficients
 
 Job = dict[str, Any]
@@ -23,17 +23,12 @@ _DATASETS = {
 class AirlinerPlan:
     """Every job of the airliner. Raises ConfigurationError for a sweep whose combinations don't fit."""
 
-    def __init__(self, airliner: Airliner, sweep_file: str) -> None:
+    def __init__(self, airliner: ResolvedSampleStudy) -> None:
         self.airliner = airliner
         try:
-            self._trials = expand_coefficients(airliner.sweep.spaces)
+            self._trials = expand_coefficients(airliner.sweeps[DEFAULT].spaces)
         except ValueError as error:
-            raise ConfigurationError([f"{sweep_file}: {error}"]) from None
-
-    @classmethod
-    def load(cls, root: Path, files: AirlinerFiles) -> "AirlinerPlan":
-        """The plan of `files` below the folder `root`. Raises ConfigurationError with what is wrong."""
-        return cls(load_airliner(root, files), files.sweep)
+            raise ConfigurationError([f"{airliner.study.sweeps[DEFAULT]}: {error}"]) from None
 
     @cached_property
     def runs(self) -> dict[str, CoefficientTrial]:
@@ -44,15 +39,15 @@ class AirlinerPlan:
     @property
     def shards(self) -> int:
         """Number of shards of each set of samples."""
-        return self.airliner.sweep.dataset.shards
+        return self.airliner.study.dataset.shards
 
     def sample(self, name: str, shard: int | str) -> Job:
         """One shard of the samples called `name`, by its number."""
-        dataset = self.airliner.sweep.dataset
+        dataset = self.airliner.study.dataset
         first = int(shard) * dataset.samples_per_shard
         return {
             **self._samples(name),
-            "study": STUDY,
+            "study": self.airliner.name,
             "configuration": self.configuration(name),
             "first": first,
             "count": min(dataset.samples_per_shard, dataset.samples - first),
@@ -65,10 +60,10 @@ class AirlinerPlan:
 
     def train(self, run_id: str) -> Job:
         """One fit."""
-        trial, dataset = self.runs[run_id], self.airliner.sweep.dataset
+        trial, dataset = self.runs[run_id], self.airliner.study.dataset
         return {
             "run_id": run_id,
-            "study": STUDY,
+            "study": self.airliner.name,
             "trial": trial.model_dump(mode="json"),
             "configuration": self.configuration(trial.dataset),
             "samples": dataset.samples,
@@ -78,11 +73,11 @@ class AirlinerPlan:
 
     def select(self) -> Job:
         """The choice among the fits."""
-        return {"study": STUDY, "runs": list(self.runs)}
+        return {"study": self.airliner.name, "runs": list(self.runs)}
 
     def _samples(self, name: str) -> Job:
         sampling, lattice = _DATASETS[name]
-        dataset, flight = self.airliner.sweep.dataset, self.airliner.flight
+        dataset, flight = self.airliner.study.dataset, self.airliner.study.flight
         aircraft = self.airliner.aircraft.model_dump(mode="json", exclude={"structural_damping_ratio"})
         return {
             "aircraft": aircraft,

@@ -13,14 +13,15 @@ from fnmatch import fnmatch
 from functools import cached_property
 from typing import Any
 
-from flexsurr.config.airliner import STUDY as AIRLINER
 from flexsurr.config.errors import ConfigurationError
 from flexsurr.config.part import values_of
-from flexsurr.config.settings import Configuration, ResolvedStudy
+from flexsurr.config.settings import Configuration
+from flexsurr.config.sources import ResolvedSampleStudy, ResolvedStudy
 from flexsurr.config.study import DEFAULT, Study, Variant
 from flexsurr.config.sweep import Trial
 from flexsurr.report.catalogue import FIGURES, TABLES, Product
 from flexsurr.training.sweep import expand, run_id
+from flexsurr.workflow.airliner_plan import AirlinerPlan
 
 Job = dict[str, Any]
 
@@ -105,8 +106,15 @@ class Plan:
 
     def __init__(self, configuration: Configuration) -> None:
         self.settings = configuration.settings
-        self.studies: Mapping[str, ResolvedStudy] = {study.name: study for study in configuration.studies}
-        self._trials = {study.name: _trials(study) for study in configuration.studies}
+        self.studies: Mapping[str, ResolvedStudy] = {
+            study.name: study for study in configuration.studies if isinstance(study, ResolvedStudy)
+        }
+        self.of_samples = {
+            study.name: AirlinerPlan(study)
+            for study in configuration.studies
+            if isinstance(study, ResolvedSampleStudy)
+        }
+        self._trials = {name: _trials(study) for name, study in self.studies.items()}
 
     @cached_property
     def runs(self) -> dict[str, Run]:
@@ -178,8 +186,7 @@ class Plan:
 
     def store(self) -> Job:
         """The tracking store."""
-        studies = [*self.settings.studies, *([AIRLINER] if self.settings.airliner else [])]
-        return {"uri": self.settings.tracking.uri, "studies": studies}
+        return {"uri": self.settings.tracking.uri, "studies": list(self.settings.studies)}
 
     def train(self, key: str) -> Job:
         """One training run."""

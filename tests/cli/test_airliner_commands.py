@@ -9,14 +9,14 @@ import pytest
 
 from flexsurr.aerodynamics.features import COEFFICIENTS
 from flexsurr.cli import sample_aerodynamics, select_coefficients, store, train_coefficients
-from flexsurr.config.airliner import AirlinerFiles
+from flexsurr.config.settings import load
 from flexsurr.storage import StorageError, read_samples
 from flexsurr.surrogates.coefficient_network import load_coefficient_network
 from flexsurr.training.tracking import read_store
-from flexsurr.workflow.airliner_plan import AirlinerPlan
+from flexsurr.workflow.plan import Plan
 
 ROOT = Path(__file__).parents[2]
-PLAN = AirlinerPlan.load(ROOT, AirlinerFiles(sweep="config/sweeps/airliner_quick.yaml"))
+PLAN = Plan(load(ROOT, ["config/config.yaml", "config/presets/quick.yaml"])).of_samples["airliner"]
 
 
 @pytest.fixture(scope="module")

@@ -46,7 +46,7 @@ PUSH = {"kind": "tip_force", "force_N": 1.0}
 BAD_VALUES = [
     (CONFIG, "resutls", "x", ["resutls", "'x'", "did you mean 'results'", "tracking"]),
     (CONFIG, "studies", [], ["studies", "[]", "at least one value"]),
-    (CONFIG, "studies", ["cantilver"], ["studies", "'cantilver'", "allowed: cantilever"]),
+    (CONFIG, "studies", ["cantilver"], ["studies", "'cantilver'", "allowed: airliner, cantilever, wing"]),
     (CONFIG, "studies", ["soft beam"], ["studies", "'soft beam' is no name", "hyphens"]),
     (CONFIG, "studies", ["-x"], ["studies", "'-x' is no name", "hyphens"]),
     (CONFIG, "studies", ["wing", "wing"], ["studies", "at most once"]),
@@ -82,6 +82,7 @@ BAD_VALUES = [
     (STUDY, "dataset.duration_s", 0.2005, ["dataset: duration_s: 0.2005", "step_s: 0.001", "such as 0.2"]),
     (STUDY, "dataset.step_s", 0.5, ["dataset: duration_s: 0.2 ", "step_s: 0.5", "such as 0.5"]),
     (STUDY, "evaluation.output_step_s", 0.7, ["evaluation: duration_s: 30 ", "output_step_s: 0.7", "30.1"]),
+    (STUDY, "source", ["samples"], ["source", "['samples']", "allowed: trajectories, samples"]),
     (STUDY, "reduction.modes", 1000, ["reduction.modes", "1000", "allowed: 1 to"]),
     (STUDY, "reduction.modes", 0, ["reduction.modes", "0", "greater than or equal to 1"]),
     (STUDY, "structure", "config/structures/absent.yaml", ["structure", "absent.yaml", "no file"]),
@@ -241,7 +242,10 @@ def test_a_value_from_a_preset_is_blamed_on_the_preset(root):
 
 @pytest.mark.parametrize(
     ("base", "words"),
-    [("wnig", ["'wnig' is no other study", "allowed: cantilever, wing"]), ("wing_unit", ["no other study"])],
+    [
+        ("wnig", ["'wnig' is no other study", "airliner, cantilever, wing"]),
+        ("wing_unit", ["no other study"]),
+    ],
 )
 def test_what_a_study_cannot_be_based_on_is_named(root, base, words):
     spoil(root, CONFIG, "studies", ["wing_unit"])

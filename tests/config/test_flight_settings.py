@@ -1,14 +1,32 @@
-"""The airliner's flight file: read whole, and refused by name."""
+"""How a study of samples flies: read whole, and refused by name."""
 
+import shutil
 from pathlib import Path
 
 import pytest
 import yaml
 
 from flexsurr.config.errors import ConfigurationError
-from flexsurr.config.flight import load_flight
+from flexsurr.config.settings import load
+from flexsurr.config.sources import ResolvedSampleStudy
 
-FLIGHT = Path(__file__).resolve().parents[2] / "config/flight/airliner.yaml"
+REPOSITORY = Path(__file__).resolve().parents[2]
+STUDY = "config/studies/airliner.yaml"
+
+
+def airliner(root: Path) -> ResolvedSampleStudy:
+    (root / "config/config.yaml").write_text("studies: [airliner]\n")
+    (study,) = load(root, ["config/config.yaml"]).studies
+    assert isinstance(study, ResolvedSampleStudy)
+    return study
+
+
+@pytest.fixture
+def root(tmp_path: Path) -> Path:
+    """A copy of the configuration that may be spoilt."""
+    shutil.copytree(REPOSITORY / "config", tmp_path / "config")
+    return tmp_path
+
 
 BAD_VALUES = [
     ("condition.mach", 0.95, ["condition.mach", "0.95", "less than 0.95"]),
@@ -26,30 +44,28 @@ BAD_VALUES = [
     ("step_s", 0.003, ["duration_s: 5 ", "step_s: 0.003", "such as 5.001"]),
     ("step_s", 7.0, ["duration_s: 5 ", "step_s: 7", "such as 7"]),
     ("step_s", "fast", ["step_s", "'fast'", "number"]),
-    ("aircraft", 7, ["aircraft", "7", "string"]),
 ]
 
 
-def test_the_flights_of_the_study():
-    settings = load_flight(FLIGHT)
+def test_the_flights_of_the_study(root: Path):
+    settings = airliner(root).study.flight
     assert (settings.condition.mach, settings.condition.altitude_m) == (0.7, 10000.0)
     assert settings.aerodynamic_modes == (1, 2, 5, 6, 7, 8)
     assert settings.random_flights.of_each_doublet == 30
 
 
 @pytest.mark.parametrize(("keys", "value", "words"), BAD_VALUES)
-def test_a_mistake_is_one_line(tmp_path: Path, keys: str, value: object, words: list[str]):
-    content = yaml.safe_load(FLIGHT.read_text())
-    inner = content
+def test_a_mistake_is_one_line(root: Path, keys: str, value: object, words: list[str]):
+    content = yaml.safe_load((root / STUDY).read_text())
+    inner = content["flight"]
     *steps, last = keys.split(".")
     for step in steps:
         inner = inner[step]
     inner[last] = value
-    path = tmp_path / "airliner.yaml"
-    path.write_text(yaml.safe_dump(content))
+    (root / STUDY).write_text(yaml.safe_dump(content))
     with pytest.raises(ConfigurationError) as caught:
-        load_flight(path, "config/flight/airliner.yaml")
+        airliner(root)
     (problem,) = caught.value.problems
-    assert problem.startswith("config/flight/airliner.yaml: ")
+    assert problem.startswith(f"{STUDY}: flight")
     for word in words:
         assert word in problem

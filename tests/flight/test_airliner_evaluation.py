@@ -43,7 +43,7 @@ LIMITS = load_feature_limits(Path(__file__).resolve().parents[2] / "config/aircr
 @pytest.fixture(scope="module")
 def plane(gnba_modes):
     settings = FlightSettings(
-        aircraft="gnba", duration_s=1.0, random_flights=RandomFlights(of_each_doublet=1, rebuild_flights=1)
+        duration_s=1.0, random_flights=RandomFlights(of_each_doublet=1, rebuild_flights=1)
     )
     coarse = PanelCounts(wing=(10, 2), horizontal_tail=(4, 2), vertical_tail=(4, 2))
     return Airliner(settings, LIMITS, gnba_modes, flexible_airframe(gnba_modes, coarse))
@@ -65,7 +65,7 @@ def anywhere(condition: FlightCondition) -> bool:
 
 
 def test_random_flights_are_each_doublet_as_often_within_limits_whatever_their_number():
-    settings = FlightSettings(aircraft="gnba")
+    settings = FlightSettings()
     flights = random_flights(settings, LIMITS, anywhere)
     assert len(flights) == 90
     assert pd.Series([flight.control for flight in flights]).value_counts().tolist() == [30, 30, 30]
@@ -75,18 +75,18 @@ def test_random_flights_are_each_doublet_as_often_within_limits_whatever_their_n
     assert np.all((np.abs(drawn[:, 2]) >= 1.0) & (np.abs(drawn[:, 2]) <= 6.0))
     # all of it, not a part
     assert np.all(np.ptp(drawn, axis=0) > [0.23, 4600.0, 11.0])
-    fewer = FlightSettings(aircraft="gnba", random_flights=RandomFlights(of_each_doublet=2))
+    fewer = FlightSettings(random_flights=RandomFlights(of_each_doublet=2))
     assert random_flights(fewer, LIMITS, anywhere) == flights[:6]
 
 
 def test_conditions_without_a_trim_are_drawn_anew():
-    settings = FlightSettings(aircraft="gnba")
+    settings = FlightSettings()
     fast = random_flights(settings, LIMITS, lambda condition: condition.mach > 0.7)
     assert len(fast) == 90
     assert min(flight.condition.mach for flight in fast) > 0.7
     with pytest.raises(TrimNotFound, match="none of 200 conditions within the limits has a trim"):
         random_flights(settings, LIMITS, lambda condition: False)
-    timid = FlightSettings(aircraft="gnba", random_flights=RandomFlights(least_deg=6.0))
+    timid = FlightSettings(random_flights=RandomFlights(least_deg=6.0))
     with pytest.raises(ValueError, match="elevator: limits of 6° leave no amplitude of 6°"):
         random_flights(timid, LIMITS, anywhere)
 

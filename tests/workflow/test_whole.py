@@ -9,7 +9,6 @@ import pytest
 
 from flexsurr.report.catalogue import TABLES
 from flexsurr.storage import read_manifest, read_shards
-from flexsurr.workflow.airliner_plan import AirlinerPlan
 
 BEAM = "cantilever"
 
@@ -98,7 +97,7 @@ def test_the_dataset_is_whole_and_split_by_trajectory(quick):
 
 def test_every_run_is_recorded_and_scored(quick):
     runs = quick.plan.runs
-    of_the_airliner = AirlinerPlan.load(quick.root, quick.plan.settings.airliner).runs
+    of_the_airliner = quick.plan.of_samples["airliner"].runs
     assert {path.name for path in (quick.results / "runs").iterdir()} == {*runs, *of_the_airliner}
     for key, run in runs.items():
         folder = quick.results / "runs" / key

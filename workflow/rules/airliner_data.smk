@@ -1,11 +1,6 @@
 # The airliner: samples of its aerodynamics, and networks that learn them.
 
-from flexsurr.workflow.airliner_plan import AirlinerPlan
-
-try:
-    airliner = AirlinerPlan.load(Path(workflow.basedir), plan.settings.airliner)
-except ConfigurationError as error:
-    raise WorkflowError(str(error)) from None
+airliner = plan.of_samples["airliner"]
 
 
 # The general rules of a study would make the same files from trajectories.

@@ -37,7 +37,7 @@ except ConfigurationError as error:
 
 RESULTS = plan.settings.results
 STUDIES = list(plan.studies)
-AIRLINER = plan.settings.airliner is not None
+AIRLINER = "airliner" in plan.of_samples
 
 
 def write(name, job):

@@ -1,0 +1,82 @@
+"""The sources a study's data come from: for each, what its file holds, and how what it names is read."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from flexsurr.config.aircraft import Aircraft
+from flexsurr.config.coefficient_sweep import CoefficientSweep
+from flexsurr.config.feature_limits import FeatureLimits
+from flexsurr.config.load import check_load
+from flexsurr.config.sample_study import SampleStudy
+from flexsurr.config.structure import Structure
+from flexsurr.config.study import Study
+from flexsurr.config.study_files import StudyFiles
+from flexsurr.config.sweep import Sweep
+
+
+@dataclass(frozen=True)
+class ResolvedStudy:
+    """A study of trajectories with everything its file refers to."""
+
+    name: str
+    study: Study
+    structure: Structure
+    sweeps: Mapping[str, Sweep]
+    frequencies_also_of: tuple[Structure, ...] = ()
+
+
+@dataclass(frozen=True)
+class ResolvedSampleStudy:
+    """A study of samples with everything its file refers to."""
+
+    name: str
+    study: SampleStudy
+    aircraft: Aircraft
+    limits: FeatureLimits
+    sweeps: Mapping[str, CoefficientSweep]
+
+
+AnyStudy = ResolvedStudy | ResolvedSampleStudy
+
+
+def _trajectories(files: StudyFiles) -> ResolvedStudy:
+    study = files.record(Study)
+    structure = files.named(Structure, study.structure, "structure")
+    others = [files.named(Structure, path, "frequencies_also_of") for path in study.frequencies_also_of]
+    sweeps = {name: files.named(Sweep, path, "sweeps", name) for name, path in study.sweeps.items()}
+    files.check()
+    modes, most = study.reduction.modes, structure.coordinates
+    if modes > most:
+        files.refuse(
+            f"{modes} is not allowed; allowed: 1 to {most}, the coordinates of {study.structure}",
+            "reduction",
+            "modes",
+        )
+    try:
+        check_load(study.evaluation.load, structure)
+    except ValueError as error:
+        files.refuse(str(error), "evaluation", "load")
+    return ResolvedStudy(files.name, study, structure, sweeps, tuple(others))
+
+
+def _samples(files: StudyFiles) -> ResolvedSampleStudy:
+    study = files.record(SampleStudy)
+    aircraft = files.named(Aircraft, study.aircraft, "aircraft")
+    limits = files.named(FeatureLimits, study.limits, "limits")
+    sweeps = {
+        name: files.named(CoefficientSweep, path, "sweeps", name) for name, path in study.sweeps.items()
+    }
+    files.check()
+    return ResolvedSampleStudy(files.name, study, aircraft, limits, sweeps)
+
+
+SOURCES: dict[str, Callable[[StudyFiles], AnyStudy]] = {"trajectories": _trajectories, "samples": _samples}
+"""What a study's `source` may be; without one it is "trajectories"."""
+
+
+def resolve(files: StudyFiles) -> AnyStudy:
+    """The study in `files` and all it leads to, checked. Raises ConfigurationError with what is wrong."""
+    source = files.value("source", "trajectories")
+    if not isinstance(source, str) or source not in SOURCES:
+        files.refuse(f"{source!r} is not allowed; allowed: {', '.join(SOURCES)}", "source")
+    return SOURCES[source](files)
