@@ -9,7 +9,6 @@ from matplotlib.lines import Line2D
 from flexsurr.report.integrators import integrator_method
 from flexsurr.report.labels import freeze_layout, place_labels
 from flexsurr.report.style import (
-    GREY,
     NAMES,
     PAGE_IN,
     VARIANTS,
@@ -134,26 +133,29 @@ def _is_landmark(model: str, implementation: str, method: str) -> bool:
 
 
 def _published(ax: Axes, cost: pd.DataFrame) -> None:
-    """The study's own ratio, as a wall time beside our described reduced model."""
+    """The study's own ratios, as wall times beside our described reduced model, with their spread."""
     described = cost[(cost["model"] == "rom") & (cost["implementation"] == "described")]["wall_s_mean"]
-    published = cost[cost["paper_percent"].notna()]
-    if described.empty or published.empty:
+    published = cost[cost["paper_percent"].notna()].drop_duplicates("model").sort_values("paper_percent")
+    if described.empty:
         return
-    model, percent = published.iloc[0][["model", "paper_percent"]]
-    at = float(described.iloc[0]) * float(percent) / 100.0
-    ax.axvline(at, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)), zorder=0)
-    ax.annotate(
-        f"published {label(model)}, {percent:g} % of described",
-        (at, 0.45),
-        xycoords=("data", "axes fraction"),
-        xytext=(-2, 0),
-        textcoords="offset points",
-        ha="right",
-        va="center",
-        rotation=90,
-        fontsize=6,
-        color="#555555",
-    )
+    second_of = float(described.iloc[0]) / 100.0
+    for k, (_, row) in enumerate(published.iterrows()):
+        mean, spread = float(row["paper_percent"]), float(row["paper_std_percent"])
+        shade = colour(family(row["model"]))
+        ax.axvspan((mean - spread) * second_of, (mean + spread) * second_of, color=shade, alpha=0.1, zorder=0)
+        ax.axvline(mean * second_of, color=shade, linewidth=0.8, linestyle=(0, (4, 2)), zorder=0)
+        ax.annotate(
+            f"published {label(row['model'])}, {mean:g} ± {spread:g} %",
+            (mean * second_of, 0.45),
+            xycoords=("data", "axes fraction"),
+            xytext=(2 if k else -2, 0),
+            textcoords="offset points",
+            ha="left" if k else "right",
+            va="center",
+            rotation=90,
+            fontsize=6,
+            color=shade,
+        )
 
 
 def _limits(ax: Axes, cost: pd.DataFrame) -> None:
