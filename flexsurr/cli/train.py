@@ -86,6 +86,7 @@ def _figures(job: Job, trial: Trial, result: Fit, dataset_sha256: str) -> dict[s
         "epochs": result.epochs,
         "best_epoch": result.best_epoch,
         "wall_s": result.wall_s,
+        "processor_s": result.processor_s,
         "parameters": result.parameters,
         "final_loss": _finite(result.final_loss),
         "train_nmse": _finite(result.train_nmse),

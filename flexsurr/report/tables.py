@@ -35,6 +35,7 @@ TRAINING_COLUMNS = (
     "epochs",
     "best_epoch",
     "wall_s",
+    "processor_s",
     "parameters",
     "final_loss",
     "train_nmse",

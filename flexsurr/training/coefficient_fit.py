@@ -32,7 +32,7 @@ class CoefficientFit:
     """What a trial came to; losses are the nmse averaged over outputs, weights those that validated best.
 
     `epochs` and `best_epoch` are the latest of its networks', `wall_s` [s] their sum. `history` has a row an
-    epoch: epoch, wall_s, train_loss, validation_loss, outputs (the name of the group, or "all").
+    epoch: epoch, wall_s, train_loss, validation_loss, processor_s, outputs (the name of the group, or "all").
     """
 
     network: CoefficientNetwork
@@ -64,10 +64,10 @@ def fit_coefficients(
 ) -> CoefficientFit:
     """Fit a network, or four side by side, to `data`, resuming from the checkpoints in `folder`.
 
-    Each ends after the trial's epochs or `time_limit_s`, or when the optimiser has nothing left to do, and
-    keeps the weights that validated best. `report(epoch, train_loss, validation_loss, wall_s)` is called
-    after each epoch; epochs of several networks are counted on. A loss that is not finite ends the fit as
-    failed, and a fit of which no epoch validates better than its start has failed too.
+    Each ends after the trial's epochs, `time_limit_s` of processor time, or when the optimiser has nothing
+    left to do, and keeps the weights that validated best. `report(epoch, train_loss, validation_loss,
+    wall_s)` is called after each epoch; epochs of several networks are counted on. A loss that is not
+    finite ends the fit as failed, and a fit of which no epoch validates better than its start has failed too.
     """
     if trial.networks == "one":
         network, progress, reason = _fit_one(trial, data, Path(folder), report)

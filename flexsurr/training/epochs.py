@@ -29,7 +29,10 @@ class Loss(Protocol):
 
 @dataclass(frozen=True)
 class Limits:
-    """When to stop: after `epochs`, after `patience` of them without better validation, after a time."""
+    """When to stop: after `epochs`, after `patience` of them without better validation, after a time.
+
+    `time_limit_s` is processor time, so that other work on the machine does not change a result.
+    """
 
     epochs: int
     patience: int | None = None
@@ -57,8 +60,9 @@ def run_epochs(
     if states is not None:
         progress = Progress.restored(states["progress"])
         optimiser.restore(states["optimiser"])
-    # the clock of this process, set forward by what an earlier one has spent
+    # the clocks of this process, set forward by what an earlier one has spent
     began = time.perf_counter() - progress.wall_s
+    processor_began = time.process_time() - progress.processor_s
     saved = time.perf_counter()
     reason = ""
     while not (reason or _at_end(limits, progress, optimiser)):
@@ -67,7 +71,8 @@ def run_epochs(
         wall_s = time.perf_counter() - began
         if not (math.isfinite(train_loss) and math.isfinite(validation_loss)):
             reason = f"the loss is not finite after epoch {progress.epoch + 1}"
-        progress.add(wall_s, train_loss, validation_loss, optimiser.parameters)
+        processor_s = time.process_time() - processor_began
+        progress.add(wall_s, train_loss, validation_loss, optimiser.parameters, processor_s)
         if report is not None:
             report(progress.epoch, train_loss, validation_loss, wall_s)
         if not reason and time.perf_counter() - saved > CHECKPOINT_EVERY_S:
@@ -81,5 +86,5 @@ def run_epochs(
 
 def _at_end(limits: Limits, progress: Progress, optimiser: Optimiser) -> bool:
     stalled = limits.patience is not None and progress.stalled_for >= limits.patience
-    late = limits.time_limit_s is not None and progress.wall_s >= limits.time_limit_s
+    late = limits.time_limit_s is not None and progress.processor_s >= limits.time_limit_s
     return bool(progress.epoch >= limits.epochs or stalled or late or optimiser.finished)

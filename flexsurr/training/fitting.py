@@ -64,6 +64,7 @@ class Fit:
     epochs: int
     best_epoch: int
     wall_s: float
+    processor_s: float
     final_loss: float
     train_nmse: float
     validation_nmse: float
@@ -78,11 +79,11 @@ def fit(trial: Trial, source: SampleSource, folder: str | Path, report: Report |
 
     Least squares reads the samples block by block; every other optimiser has them all in memory.
     Ends after the trial's epochs, when validation has not improved by 1 % over `patience` of them, after
-    `time_limit_s`, or when the optimiser has nothing left to do, and keeps the weights that validated
-    best, or the last ones. `report(epoch, train_loss, validation_loss, wall_s)` is called after each epoch.
-    A loss that is not finite ends the fit as failed, and a fit of which no epoch validates better than its
-    start has failed too. Interrupted and resumed, the weights are those of an uninterrupted run (unless the
-    time limit ends it).
+    `time_limit_s` of processor time, or when the optimiser has nothing left to do, and keeps the weights
+    that validated best, or the last ones. `report(epoch, train_loss, validation_loss, wall_s)` is called
+    after each epoch. A loss that is not finite ends the fit as failed, and a fit of which no epoch
+    validates better than its start has failed too. Interrupted and resumed, the weights are those of an
+    uninterrupted run (unless the time limit ends it).
     """
     folder = Path(folder)
     if trial.optimiser == "least_squares":
@@ -110,6 +111,7 @@ def fit(trial: Trial, source: SampleSource, folder: str | Path, report: Report |
         epochs=progress.epoch,
         best_epoch=progress.best_epoch,
         wall_s=progress.wall_s,
+        processor_s=progress.processor_s,
         final_loss=progress.final_loss,
         train_nmse=training.loss(network.parameters),
         validation_nmse=validation.loss(network.parameters),
@@ -178,7 +180,7 @@ def _of(setting: Setting | None) -> Setting:
 
 def _fit_linear(trial: Trial, source: SampleSource, report: Report | None) -> Fit:
     degree = _of(trial.degree)
-    start = time.perf_counter()
+    start, processor_start = time.perf_counter(), time.process_time()
     reason = ""
     surrogate: Surrogate
     if trial.architecture == "polynomial":
@@ -192,7 +194,8 @@ def _fit_linear(trial: Trial, source: SampleSource, report: Report | None) -> Fi
     validation = FieldErrors.over(surrogate, source.validation_blocks())
     losses = training.nmse(), validation.nmse()
     progress = Progress(math.inf, surrogate.parameters)
-    progress.add(time.perf_counter() - start, *losses, surrogate.parameters)
+    spent_s, processor_s = time.perf_counter() - start, time.process_time() - processor_start
+    progress.add(spent_s, *losses, surrogate.parameters, processor_s)
     if report is not None:
         report(1, *losses, progress.wall_s)
     return Fit(
@@ -203,6 +206,7 @@ def _fit_linear(trial: Trial, source: SampleSource, report: Report | None) -> Fi
         epochs=1,
         best_epoch=1,
         wall_s=progress.wall_s,
+        processor_s=progress.processor_s,
         final_loss=losses[0],
         train_nmse=losses[0],
         validation_nmse=losses[1],

@@ -8,7 +8,7 @@ import pandas as pd
 from flexsurr.simulation.rhs import Array
 
 WORTH_WAITING_FOR = 0.01
-COLUMNS = ("epoch", "wall_s", "train_loss", "validation_loss")
+COLUMNS = ("epoch", "wall_s", "train_loss", "validation_loss", "processor_s")
 
 
 @dataclass
@@ -23,7 +23,7 @@ class Progress:
     best_epoch: int = 0
     mark_loss: float = np.inf
     mark_epoch: int = 0
-    rows: list[tuple[float, float, float, float]] = field(default_factory=list)
+    rows: list[tuple[float, ...]] = field(default_factory=list)
 
     @property
     def epoch(self) -> int:
@@ -41,13 +41,25 @@ class Progress:
         return self.rows[-1][1] if self.rows else 0.0
 
     @property
+    def processor_s(self) -> float:
+        """Processor time of the same [s]: what other work on the machine does not change."""
+        return self.rows[-1][4] if self.rows else 0.0
+
+    @property
     def final_loss(self) -> float:
         """The training loss of the last epoch, as trained; NaN before the first."""
         return self.rows[-1][2] if self.rows else np.nan
 
-    def add(self, wall_s: float, train_loss: float, validation_loss: float, parameters: Array) -> None:
+    def add(
+        self,
+        wall_s: float,
+        train_loss: float,
+        validation_loss: float,
+        parameters: Array,
+        processor_s: float,
+    ) -> None:
         """Note the next epoch, and its weights if none validated as well before."""
-        self.rows.append((self.epoch + 1.0, wall_s, train_loss, validation_loss))
+        self.rows.append((self.epoch + 1.0, wall_s, train_loss, validation_loss, processor_s))
         if validation_loss < self.best_loss:
             self.best_epoch, self.best_loss = self.epoch, validation_loss
             self.best_parameters = parameters.astype(np.float64)
@@ -55,7 +67,7 @@ class Progress:
             self.mark_epoch, self.mark_loss = self.epoch, validation_loss
 
     def history(self) -> pd.DataFrame:
-        """A row an epoch: epoch, wall_s, train_loss, validation_loss (nmse)."""
+        """A row an epoch: epoch, wall_s, train_loss, validation_loss (nmse), processor_s."""
         frame = pd.DataFrame(np.array(self.rows).reshape(-1, len(COLUMNS)), columns=list(COLUMNS))
         return frame.astype({"epoch": np.int64})
 

@@ -13,7 +13,8 @@ CONTRACT = {
     "training": "study, variant, run_id, architecture, hidden, activation, degree, "
     "scaling, optimiser, learning_rate, batch_size, precision, loss, keep, "
     "patience, time_limit_s, seed, dataset, epoch_limit, epochs, best_epoch, "
-    "wall_s, parameters, final_loss, train_nmse, validation_nmse, best_validation_nmse, published_loss",
+    "wall_s, processor_s, parameters, final_loss, train_nmse, validation_nmse, best_validation_nmse, "
+    "published_loss",
     "seeds": "study, variant, configuration, architecture, hidden, activation, degree, optimiser, seeds, "
     "failed, wall_s_mean, wall_s_std, validation_nmse_mean, validation_nmse_std_decades, "
     "long_response_error_percent_mean, long_response_error_percent_std, diverged",

@@ -1,6 +1,7 @@
 """One trial: best weights kept, stopped, resumed, failed."""
 
 import json
+import time
 
 import numpy as np
 import pytest
@@ -41,7 +42,7 @@ def test_what_a_fit_says_is_so(name, tmp_path):
     seen = []
     result = fit(trial, DATASET, tmp_path, lambda *row: seen.append(row))
     assert (result.status, result.reason) == ("finished", "")
-    assert list(result.history.columns) == ["epoch", "wall_s", "train_loss", "validation_loss"]
+    assert list(result.history.columns) == ["epoch", "wall_s", "train_loss", "validation_loss", "processor_s"]
     assert result.history.epoch.tolist() == list(range(1, result.epochs + 1)) == [row[0] for row in seen]
     assert np.all(np.diff(result.history.wall_s) > 0.0)
     assert result.wall_s == result.history.wall_s.iloc[-1]
@@ -122,8 +123,17 @@ def test_time_limit(tmp_path):
     trial = LM.model_copy(update={"epochs": 10**6, "time_limit_s": 0.05})
     result = fit(trial, DATASET, tmp_path)
     assert result.status == "finished"
-    assert result.history.wall_s.iloc[-1] >= 0.05
-    assert np.all(result.history.wall_s.iloc[:-1] < 0.05)
+    assert result.history.processor_s.iloc[-1] >= 0.05
+    assert np.all(result.history.processor_s.iloc[:-1] < 0.05)
+    assert result.processor_s == result.history.processor_s.iloc[-1]
+
+
+def test_waiting_is_not_counted_against_the_time_limit(tmp_path):
+    """A busy machine must not change a result."""
+    trial = LM.model_copy(update={"epochs": 5, "time_limit_s": 60.0})
+    waited = fit(trial, DATASET, tmp_path, report=lambda *_: time.sleep(0.05))
+    assert waited.epochs == 5
+    assert waited.processor_s < waited.wall_s - 0.15
 
 
 def test_weights_that_leave_the_numbers_are_a_failure_with_a_reason(tmp_path):

@@ -15,7 +15,7 @@ BEAM = "cantilever"
 TRAINING_COLUMNS = (
     "study,variant,run_id,architecture,hidden,activation,degree,scaling,optimiser,"
     "learning_rate,batch_size,precision,loss,keep,patience,time_limit_s,seed,dataset,"
-    "epoch_limit,epochs,best_epoch,wall_s,parameters,final_loss,train_nmse,validation_nmse,best_validation_nmse,published_loss"
+    "epoch_limit,epochs,best_epoch,wall_s,processor_s,parameters,final_loss,train_nmse,validation_nmse,best_validation_nmse,published_loss"
 )
 COST_COLUMNS = (
     "study,variant,response,model,implementation,integrator,simulations,wall_s_mean,wall_s_std,"
