@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.linalg import eigh
 
-from flexsurr.beam.chain import chain, check_coordinates, damping_matrix, stiffness_matrix
+from flexsurr.beam.chain import chain, check_coordinates
 from flexsurr.beam.equilibrium import EquilibriumNotFound, find_equilibrium, tangent_stiffness
 from flexsurr.beam.kinematics import configuration, generalised_forces, mass_matrix
 from flexsurr.beam.loads import Load
@@ -49,16 +49,7 @@ def reduce(structure: Structure, reduction: Reduction) -> ModalBasis:
     modes = modes[:, : reduction.modes]
     if reduction.normalisation == "unit":
         modes = modes / np.linalg.norm(modes, axis=0)
-    return ModalBasis(
-        structure=structure,
-        equilibrium=equilibrium,
-        modes=np.ascontiguousarray(modes),
-        stiffness=modes.T @ stiffness_matrix(structure) @ modes,
-        damping=modes.T @ damping_matrix(structure) @ modes,
-        omega_rad_s=omega[: reduction.modes],
-        unit_norms=np.linalg.norm(modes, axis=0),
-        normalisation=reduction.normalisation,
-    )
+    return ModalBasis.of(structure, equilibrium, modes, omega[: reduction.modes], reduction.normalisation)
 
 
 def _signs(structure: Structure, q: Array, modes: Array) -> Array:

@@ -31,6 +31,22 @@ class ModalBasis:
     unit_norms: Array  # (r,) Euclidean norm of each mode; 1 for modes of unit norm
     normalisation: str  # "unit" or "mass"
 
+    @classmethod
+    def of(
+        cls, structure: Structure, equilibrium: Array, modes: Array, omega_rad_s: Array, normalisation: str
+    ) -> "ModalBasis":
+        """The basis of these modes (n, r), with what follows from them."""
+        return cls(
+            structure=structure,
+            equilibrium=equilibrium,
+            modes=np.ascontiguousarray(modes),
+            stiffness=modes.T @ stiffness_matrix(structure) @ modes,
+            damping=modes.T @ damping_matrix(structure) @ modes,
+            omega_rad_s=omega_rad_s,
+            unit_norms=np.linalg.norm(modes, axis=0),
+            normalisation=normalisation,
+        )
+
 
 @dataclass(frozen=True, eq=False)
 class Projection:

@@ -33,6 +33,8 @@ def main(configfile: list[str], directory: Path) -> None:
         print(
             f"{name}: {resolved.structure.name}, {variants} variants, {datasets} datasets each, {runs} runs"
         )
+    for name, samples in plan.of_samples.items():
+        print(f"{name}: {len(samples.runs)} runs")
 
 
 if __name__ == "__main__":

@@ -6,12 +6,20 @@ import time
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from flexsurr.beam import EquilibriumNotFound, reduce
 from flexsurr.cli.alone import alone_in
 from flexsurr.cli.command import Job, command
+from flexsurr.config.part import part_of
+from flexsurr.config.structure import Structure
+from flexsurr.config.study import Study
 from flexsurr.config.sweep import Trial
 from flexsurr.storage import read_manifest, replacing, write_json
-from flexsurr.surrogates import save
 from flexsurr.training import Fit, ShardedDataset, fit
+from flexsurr.training.configuration_samples import configuration_samples
+from flexsurr.training.dataset import SampleSource
+from flexsurr.training.saved_surrogate import SavedSurrogate, save_surrogate
 from flexsurr.training.sweep import run_id
 from flexsurr.training.tracking import read_store, tracked
 
@@ -20,19 +28,26 @@ log = logging.getLogger(__name__)
 PROGRESS_EVERY_S = 5.0
 
 
-def main(job: Job, manifest: Path, store: Path, folder: Path) -> None:
+def main(job: Job, manifest: list[Path], store: Path, folder: Path) -> None:
     """Write parameters.json, fit.json, history.parquet, weights.npz and best.npz of the run into `folder`.
 
     weights.npz holds what the trial keeps, best.npz what validated best. A trial that diverges ends well,
-    with status "failed", its reason, and the best weights it met.
+    with status "failed", its reason, and the best weights it met. One that samples configurations has no
+    `manifest`.
     """
     with alone_in(folder):
         _train(job, manifest, store, folder)
 
 
-def _train(job: Job, manifest: Path, store: Path, folder: Path) -> None:
-    trial = Trial.model_validate(job["trial"])
-    dataset = ShardedDataset(read_manifest(manifest))
+def _train(job: Job, manifest: list[Path], store: Path, folder: Path) -> None:
+    trial, study = Trial.model_validate(job["trial"]), part_of(Study, job["part"])
+    basis = reduce(Structure.model_validate(job["structure"]), study.reduction)
+    dataset: SampleSource
+    if trial.configurations is None:
+        dataset = ShardedDataset(read_manifest(manifest[0]))
+    else:
+        ranges = study.dataset.initial_conditions
+        dataset = configuration_samples(basis, job["variant"], ranges, trial.configurations)
     described = {**job, "dataset_sha256": dataset.sha256}
     write_json(folder / "parameters.json", described)
     page_store = read_store(store)
@@ -56,8 +71,13 @@ def _train(job: Job, manifest: Path, store: Path, folder: Path) -> None:
         result = fit(trial, dataset, folder, report=report)
         figures = _figures(job, trial, result, dataset.sha256)
         page.status, page.reason = result.status, result.reason
-        save(result.surrogate, folder / "weights.npz")
-        save(result.best, folder / "best.npz")
+        low, high = (
+            np.array(values)[: len(dataset.state_names)]
+            for values in (dataset.scales.low, dataset.scales.high)
+        )
+        for name, surrogate in (("weights", result.surrogate), ("best", result.best)):
+            saved = SavedSurrogate(surrogate, job["study"], job["variant"], job["run_id"], low, high, basis)
+            save_surrogate(saved, folder / f"{name}.npz")
         with replacing(folder / "history.parquet") as beside:
             result.history.to_parquet(beside, index=False)
         write_json(folder / "fit.json", figures)
@@ -107,5 +127,10 @@ def _because(reason: str) -> str:
 if __name__ == "__main__":
     command(
         main,
-        {"manifest": "of the dataset", "store": "the address of the tracking store", "folder": "of the run"},
+        {
+            "manifest": "of the dataset; none for sampled configurations …",
+            "store": "the address of the tracking store",
+            "folder": "of the run",
+        },
+        expected=(EquilibriumNotFound,),
     )

@@ -16,6 +16,9 @@ Count = Annotated[int, Field(ge=1)]
 DEFAULT = "default"
 """What the sweep that figures show, and the dataset that surrogates are validated on, are called."""
 
+CONFIGURATIONS = "configurations"
+"""What stands for the dataset of runs that need none: they sample configurations, without a simulation."""
+
 IntegratorMethod = Literal[
     "scipy_radau",
     "scipy_bdf",
@@ -258,10 +261,11 @@ class Study(Record):
 
     @model_validator(mode="after")
     def _datasets_are_apart(self) -> Self:
-        if DEFAULT in self.further_datasets:
-            raise ValueError(
-                f"further_datasets: {DEFAULT!r} is what `dataset` is called; another name is needed"
-            )
+        for taken, what in ((DEFAULT, "`dataset`"), (CONFIGURATIONS, "a sample without a simulation")):
+            if taken in self.further_datasets:
+                raise ValueError(
+                    f"further_datasets: {taken!r} is what {what} is called; another name is needed"
+                )
         seeds = {"dataset": self.seed_of(self.dataset)}
         for name, dataset in self.further_datasets.items():
             seed = self.seed_of(dataset)

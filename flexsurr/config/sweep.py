@@ -52,10 +52,12 @@ class Trial(Record):
     What its architecture and its optimiser do not take is None; giving it is an error. `loss` is what first-
     order optimisers minimise: the nmse, the mean of squares of the scaled rates' errors, or eqs. 11 and 12
     as printed (`norms`: a sample's ‖error of q̇‖ + ‖error of ṗ‖, and their mean over a batch). `keep` says
-    whether the weights are those that validated best or those of the last epoch.
+    whether the weights are those that validated best or those of the last epoch. With a number of
+    `configurations` the trial trains on those, sampled without a simulation, instead of a dataset.
     """
 
     architecture: Architecture
+    configurations: Count | None = None
     hidden: tuple[Count, ...] | None = None
     activation: Activation | None = None
     degree: Count | None = None
@@ -86,7 +88,7 @@ class Trial(Record):
         if architecture == "port_hamiltonian" and not {"hidden", "activation"}.isdisjoint(given):
             takes = NETWORK
         is_polynomial = takes is POLYNOMIAL
-        of_both = {**takes, **OPTIMISER_SETTINGS[optimiser]}
+        of_both = {**takes, **OPTIMISER_SETTINGS[optimiser], "configurations": None}
         known = given.keys() & cls.model_fields.keys()
         for key in sorted(known - of_both.keys() - {"architecture", "optimiser"}):
             owner = architecture if key in (*NETWORK, *POLYNOMIAL, "scaling") else optimiser
@@ -117,6 +119,7 @@ class Space(Record):
     """Values to combine; a key with several values is a dimension of the search."""
 
     architecture: Architecture
+    configurations: Annotated[tuple[Count, ...], Field(min_length=1)] | None = None
     hidden: Annotated[tuple[tuple[Count, ...], ...], Field(min_length=1)] | None = None
     activation: Annotated[tuple[Activation, ...], Field(min_length=1)] | None = None
     degree: Annotated[tuple[Count, ...], Field(min_length=1)] | None = None

@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from flexsurr.config.study import CONFIGURATIONS
 from flexsurr.report.style import (
     BLACK,
     GREY,
@@ -25,6 +26,8 @@ LARGEST_PERCENT = 1e3
 
 BY_PAIRS = "by_pairs"
 """How the port-Hamiltonian forms and polynomials scale the states; their trials have no choice of it."""
+
+PALE = "#C8C8C8"
 
 MARKERS = {
     ("mass", BY_PAIRS): "o",
@@ -72,11 +75,16 @@ def _point(ax: Axes, run: Any) -> None:
         LARGEST_PERCENT if pd.isna(error) else min(error, LARGEST_PERCENT),
         marker=MARKERS[run["normalisation"], run["scaling"]],
         color=line,
-        markerfacecolor=line if run["dataset"] == "default" else "white",
+        markerfacecolor=_fill(run["dataset"], line),
         markersize=5,
         linestyle="",
         zorder=3,
     )
+
+
+def _fill(dataset: str, line: str) -> str:
+    """Full for the study's own dataset, pale for sampled configurations, none for further datasets."""
+    return {"default": line, CONFIGURATIONS: PALE}.get(dataset, "white")
 
 
 def _handles(judged: pd.DataFrame) -> list[Line2D]:
@@ -93,8 +101,8 @@ def _handles(judged: pd.DataFrame) -> list[Line2D]:
             )
             handles.append(Line2D([], [], color=BLACK, marker=marker, linestyle="", label=text))
     for name in sorted(set(judged["dataset"])):
-        fill = BLACK if name == "default" else "white"
-        text = "the study's dataset" if name == "default" else f"dataset {name}"
+        told = {"default": "the study's dataset", CONFIGURATIONS: "no simulation"}
+        text, fill = told.get(name, f"dataset {name}"), _fill(name, BLACK)
         handles.append(
             Line2D([], [], color=BLACK, marker="o", markerfacecolor=fill, linestyle="", label=text)
         )

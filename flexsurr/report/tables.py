@@ -17,6 +17,7 @@ TRAINING_COLUMNS = (
     "variant",
     "run_id",
     "architecture",
+    "configurations",
     "hidden",
     "activation",
     "degree",

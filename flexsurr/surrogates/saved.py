@@ -1,5 +1,6 @@
 """Surrogates on disk: one .npz of arrays with a JSON header that says what they are."""
 
+from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Literal
@@ -7,7 +8,7 @@ from typing import Any, Literal
 import numpy as np
 
 from flexsurr.simulation.rhs import Model
-from flexsurr.surrogates.archive import read_archive, write_archive
+from flexsurr.surrogates.archive import Kept, read_archive, write_archive
 from flexsurr.surrogates.compiled import compiled
 from flexsurr.surrogates.dissipative_hnn import DissipativeHNN
 from flexsurr.surrogates.hnn import HNN
@@ -22,8 +23,16 @@ FORMAT = "flexsurr surrogate 1"
 NETWORKS = {network.architecture: network for network in (MLP, HNN, DissipativeHNN)}
 
 
-def save(surrogate: Surrogate, path: str | Path) -> None:
-    """Write `surrogate` to `path` whole: beside its place first, then moved there."""
+def save(
+    surrogate: Surrogate,
+    path: str | Path,
+    about: Mapping[str, Any] | None = None,
+    about_arrays: Mapping[str, np.ndarray] | None = None,
+) -> None:
+    """Write `surrogate` to `path` whole: beside its place first, then moved there.
+
+    What it stands for is said by `about`, plain JSON values, and `about_arrays`; `load_about` reads them.
+    """
     header = {
         "architecture": surrogate.architecture,
         "state_names": surrogate.state_names,
@@ -31,17 +40,34 @@ def save(surrogate: Surrogate, path: str | Path) -> None:
         "scaling": asdict(surrogate.scaling),
         **surrogate.settings(),
     }
+    if about is not None:
+        header["about"] = dict(about)
     arrays: dict[str, np.ndarray] = {"parameters": surrogate.parameters}
     if isinstance(surrogate, PolynomialHamiltonian | PolynomialPortHamiltonian):
         arrays["exponents"] = surrogate.exponents
     if isinstance(surrogate, NetworkPortHamiltonian):
         arrays["floor"] = surrogate.floor
-    write_archive(path, FORMAT, header, arrays)
+    write_archive(path, FORMAT, header, arrays | dict(about_arrays or {}))
 
 
 def load(path: str | Path) -> Surrogate:
     """The surrogate in `path`. Raises SurrogateFileError for a damaged or foreign file, OSError for none."""
     return read_archive(path, FORMAT, "a surrogate", _surrogate)
+
+
+def load_about(
+    path: str | Path, build: Callable[[Surrogate, dict[str, Any], dict[str, np.ndarray]], Kept]
+) -> Kept:
+    """What `build(surrogate, about, arrays)` makes of the surrogate in `path` and of what was saved about it.
+
+    Raises as `load`, and SurrogateFileError where nothing was.
+    """
+    return read_archive(
+        path,
+        FORMAT,
+        "a surrogate that knows what it stands for",
+        lambda header, arrays: build(_surrogate(header, arrays), header["about"], arrays),
+    )
 
 
 def _surrogate(header: dict[str, Any], arrays: dict[str, np.ndarray]) -> Surrogate:

@@ -17,7 +17,7 @@ from flexsurr.config.errors import ConfigurationError
 from flexsurr.config.part import values_of
 from flexsurr.config.settings import Configuration
 from flexsurr.config.sources import ResolvedSampleStudy, ResolvedStudy
-from flexsurr.config.study import DEFAULT, Study, Variant
+from flexsurr.config.study import CONFIGURATIONS, DEFAULT, Study, Variant
 from flexsurr.config.sweep import Trial
 from flexsurr.report.catalogue import FIGURES, TABLES, Product
 from flexsurr.training.sweep import expand, run_id
@@ -37,6 +37,8 @@ DATASET = (
     "dataset.initial_conditions",
     "dataset.integrator",
 )
+# What configurations depend on that are sampled without a simulation.
+SAMPLED = ("reduction", "dataset.initial_conditions")
 SCORE = (
     "seed",
     "reduction",
@@ -83,7 +85,7 @@ COST = (
 
 @dataclass(frozen=True)
 class Run:
-    """One training run: a trial of a sweep on a dataset of one variant."""
+    """One training run: a trial of a sweep on a dataset of one variant, or in its place."""
 
     study: str
     variant: Variant
@@ -133,9 +135,10 @@ class Plan:
         for sweep, trials in self._trials[study].items():
             dataset = settings.dataset_of(sweep)
             for variant in settings.variants:
-                data = self.data_hash(study, data_folder(variant, dataset))
+                folder = data_folder(variant, dataset)
+                data, ranges = self.data_hash(study, folder), _hash(self._configurations(study, folder))
                 for trial in trials:
-                    key = run_id(trial, study, variant, data)
+                    key = run_id(trial, study, variant, ranges if trial.configurations else data)
                     sweeps[sweep][key] = Run(study, variant, dataset, trial)
         return sweeps
 
@@ -191,15 +194,25 @@ class Plan:
     def train(self, key: str) -> Job:
         """One training run."""
         run = self.runs[key]
-        trial = run.trial.model_dump(mode="json")
+        values = self._configurations(run.study, run.data)
         return {
+            **values,
             "run_id": key,
             "study": run.study,
             "variant": run.variant,
-            "dataset": run.dataset,
-            "data": self.data_hash(run.study, run.data),
-            "trial": trial,
+            "dataset": CONFIGURATIONS if run.trial.configurations else run.dataset,
+            "data": _hash(values) if run.trial.configurations else self.data_hash(run.study, run.data),
+            "trial": run.trial.model_dump(mode="json"),
         }
+
+    def trains_on(self, key: str) -> list[str]:
+        """The manifest that a run reads, below the results; none where it needs no simulation."""
+        run = self.runs[key]
+        return [] if run.trial.configurations else [f"datasets/{run.study}/{run.data}/manifest.json"]
+
+    def _configurations(self, study: str, data: str) -> Job:
+        values = values_of(self._settings(study, data), SAMPLED)
+        return {**self._part(study, ()), "part": values}
 
     def score(self, key: str) -> Job:
         """Held-out errors and long responses of one run."""

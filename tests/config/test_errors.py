@@ -92,7 +92,7 @@ BAD_VALUES = [
     (STUDY, "dataset.training_fraction", 1.0, ["dataset.training_fraction", "1.0", "less than 1"]),
     (STUDY, "dataset", 5, ["dataset", "5", "keys with values"]),
     (STUDY, "trains_on", {"default": "many"}, ["trains_on.default", "'many'", "allowed: default"]),
-    (STUDY, "trains_on", {"other": "default"}, ["trains_on", "'other'", "allowed: default"]),
+    (STUDY, "trains_on", {"other": "default"}, ["trains_on", "'other'", "allowed: data_free, default"]),
     (
         STUDY,
         "evaluation.learned_load.dataset",

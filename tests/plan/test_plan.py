@@ -114,6 +114,20 @@ def test_a_new_value_of_the_sweep_adds_its_runs_and_leaves_the_others(root):
     assert {name for name in before if before[name] != after[name]} == {f"select {BEAM}"}
 
 
+def test_what_samples_configurations_needs_no_data_and_no_simulation(root):
+    before, p = jobs(root), plan(root)
+    (free, *_) = p.select(BEAM)["sweeps"]["data_free"]
+    (trained, *_) = p.select(BEAM)["sweeps"]["default"]
+    assert p.trains_on(free) == []
+    assert p.trains_on(trained) == [f"datasets/{BEAM}/hamiltonian/manifest.json"]
+    assert (p.train(free)["dataset"], p.train(trained)["dataset"]) == ("configurations", "default")
+    for key, value in {"trajectories": 9, "duration_s": 0.2, "training_fraction": 0.7}.items():
+        change(root, QUICK, f"{OVER}.dataset.{key}", value)
+    assert jobs(root)[f"train {free}"] == before[f"train {free}"]
+    change(root, STUDY, "dataset.initial_conditions.q_max_deg", 10.0)
+    assert f"train {free}" not in jobs(root)
+
+
 def test_a_run_is_named_by_its_content(root):
     for key, run in plan(root).runs.items():
         assert key.startswith(f"{run.trial.architecture}-")
@@ -131,7 +145,8 @@ def test_a_further_dataset_is_drawn_by_its_own_seed_and_trained_on_by_the_sweep_
     change(root, STUDY, "trains_on.many", "many")
     p = plan(root)
     assert {name for name in before if before[name] != jobs(root)[name]} == {f"select {BEAM}"}
-    assert len(p.runs_of(BEAM)) == 2 * len(p.select(BEAM)["sweeps"]["default"])
+    sweeps = p.select(BEAM)["sweeps"]
+    assert len(sweeps["many"]) == len(sweeps["default"])
     assert {p.runs[key].data for key in p.select(BEAM)["sweeps"]["many"]} == {
         "hamiltonian-many",
         "as_printed-many",

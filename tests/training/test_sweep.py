@@ -68,7 +68,7 @@ def test_run_ids_name_their_content():
 def test_run_ids_do_not_change_unnoticed():
     """A change of these names reruns every run there is: intended, or a mistake."""
     trial = Trial(architecture="polynomial", degree=6, optimiser="least_squares")
-    assert run_id(trial, "cantilever", "hamiltonian", "0123456789abcdef") == "polynomial-8da97e8753"
+    assert run_id(trial, "cantilever", "hamiltonian", "0123456789abcdef") == "polynomial-8466707c38"
 
 
 def test_a_default_that_is_spelled_out_is_the_same_run():
@@ -93,8 +93,23 @@ def test_what_would_do_nothing_is_refused(changes, reason):
         Trial(**{"architecture": "hnn", "hidden": (8,), "activation": "elu", **changes})
 
 
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"architecture": "port_hamiltonian", "degree": 4, "optimiser": "least_squares"},
+        {"architecture": "mlp", "hidden": (8,), "activation": "elu", "optimiser": "lbfgs"},
+    ],
+)
+def test_every_kind_of_trial_may_sample_configurations(values):
+    trained, sampled = Trial(**values), Trial(**values, configurations=100)
+    assert trained.configurations is None
+    assert run_id(trained, "s", "v", "d") != run_id(sampled, "s", "v", "d")
+    with pytest.raises(ValueError, match="greater than or equal to 1"):
+        Trial(**values, configurations=0)
+
+
 def test_a_seed_does_nothing_to_least_squares():
-    with pytest.raises(ValueError, match="seed does nothing with least_squares; allowed: degree"):
+    with pytest.raises(ValueError, match="seed does nothing with least_squares; allowed: conf"):
         Trial(architecture="polynomial", degree=6, optimiser="least_squares", seed=1)
 
 

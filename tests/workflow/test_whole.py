@@ -13,7 +13,7 @@ from flexsurr.storage import read_manifest, read_shards
 BEAM = "cantilever"
 
 TRAINING_COLUMNS = (
-    "study,variant,run_id,architecture,hidden,activation,degree,scaling,optimiser,"
+    "study,variant,run_id,architecture,configurations,hidden,activation,degree,scaling,optimiser,"
     "learning_rate,batch_size,precision,loss,keep,patience,time_limit_s,seed,dataset,"
     "epoch_limit,epochs,best_epoch,wall_s,processor_s,parameters,final_loss,train_nmse,validation_nmse,best_validation_nmse,published_loss"
 )

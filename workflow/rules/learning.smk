@@ -13,9 +13,7 @@ onstart:
 
 rule train:
     input:
-        manifest=lambda w: (
-            f"{RESULTS}/datasets/{plan.runs[w.run_id].study}/{plan.runs[w.run_id].data}/manifest.json"
-        ),
+        manifest=lambda w: [f"{RESULTS}/{file}" for file in plan.trains_on(w.run_id)],
     output:
         parameters=f"{RESULTS}/runs/{{run_id}}/parameters.json",
         weights=f"{RESULTS}/runs/{{run_id}}/weights.npz",

@@ -1,0 +1,194 @@
+"""A surrogate from Python, in five lines:
+
+import flexsurr
+
+wing = flexsurr.load_surrogate("results/runs/<run_id>/weights.npz")
+response = wing.simulate(initial={"eta_1": 5.0}, duration_s=10.0)
+response.plot("response.png")
+"""
+
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+from pydantic import TypeAdapter
+
+from flexsurr.beam import find_equilibrium, loaded
+from flexsurr.config.load import Load, check_load
+from flexsurr.config.study import Integrator
+from flexsurr.simulation import Trajectory, simulate
+from flexsurr.simulation.rhs import Array, Model
+from flexsurr.surrogates import Hamiltonian, compiled
+from flexsurr.training import saved_surrogate
+from flexsurr.training.saved_surrogate import SavedSurrogate
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+ANY_STIFFNESS = Integrator(method="scipy_lsoda", rtol=1e-8, atol=1e-10)
+"""Changes by itself between a smooth method and a stiff one; nothing has to be compiled."""
+
+
+class OutOfRange(UserWarning):
+    """A simulation has left the range in which its surrogate was trained."""
+
+
+@dataclass(frozen=True, eq=False)
+class Response:
+    """A simulation of a surrogate, as far as it came.
+
+    `tip` (m, 3) [m] is the position of the tip in the clamp's frame before it is turned, `twist` (m,) [rad]
+    that of the tip against the clamp; both are None for data that came from no structure. `energy` (m,) [J]
+    is the surrogate's own, without the work of the load, or None where it has none.
+    """
+
+    name: str
+    trajectory: Trajectory
+    tip: Array | None
+    twist: Array | None
+    energy: Array | None
+
+    @property
+    def t(self) -> Array:
+        """Times [s], (m,)."""
+        return self.trajectory.t
+
+    @property
+    def x(self) -> Array:
+        """States (m, d) in their units."""
+        return self.trajectory.x
+
+    def table(self) -> pd.DataFrame:
+        """A row for each time: t_s, the states, tip_x_m, tip_y_m, tip_z_m, tip_twist_rad and energy_J."""
+        columns: dict[str, Array] = {"t_s": self.t}
+        columns |= dict(zip(self.trajectory.state_names, self.x.T, strict=True))
+        if self.tip is not None and self.twist is not None:
+            columns |= dict(zip(("tip_x_m", "tip_y_m", "tip_z_m"), self.tip.T, strict=True))
+            columns["tip_twist_rad"] = self.twist
+        if self.energy is not None:
+            columns["energy_J"] = self.energy
+        return pd.DataFrame(columns)
+
+    def plot(self, path: str | Path | None = None) -> "Figure":
+        """Tip, or states where there is no tip, over time; written to `path` (.png, .svg, .pdf) if given."""
+        from flexsurr.report.response_plot import response_plot  # here, for matplotlib takes a second
+
+        figure = response_plot(self.table(), self.name)
+        if path is not None:
+            figure.savefig(path)
+        return figure
+
+
+class LoadedSurrogate:
+    """A surrogate that can be simulated; `saved` is what its file holds."""
+
+    def __init__(self, saved: SavedSurrogate) -> None:
+        self.saved = saved
+        self._model = compiled(saved.surrogate)
+
+    @property
+    def state_names(self) -> tuple[str, ...]:
+        """Of the d states."""
+        return self._model.state_names
+
+    @property
+    def state_units(self) -> tuple[str, ...]:
+        """Of the d states."""
+        return self._model.state_units
+
+    def __str__(self) -> str:
+        """What it is, what it stands for, its states and where it was trained: a few lines."""
+        saved = self.saved
+        lines = [
+            f"{saved.run_id}: {saved.surrogate.architecture}, {saved.surrogate.parameter_count} parameters",
+            f"study {saved.study}, variant {saved.variant}",
+        ]
+        if saved.basis is not None:
+            structure = saved.basis.structure
+            lines.append(
+                f"stands for {structure.name}: {structure.length_m:g} m, {structure.elements} elements, "
+                f"{', '.join(structure.ordered_joints)}; {saved.basis.normalisation} modes at "
+                f"{', '.join(f'{omega:.4g}' for omega in saved.basis.omega_rad_s)} rad/s"
+            )
+            lines.append("outputs tip position [m], tip twist [rad]")
+        lines.append("trained with")
+        width = max(map(len, self.state_names))
+        lines += [
+            f"  {name:<{width}}  {low:>10.4g} to {high:<10.4g} {unit}"
+            for name, low, high, unit in zip(
+                self.state_names, saved.low, saved.high, self.state_units, strict=True
+            )
+        ]
+        return "\n".join(lines)
+
+    def simulate(
+        self,
+        *,
+        duration_s: float,
+        initial: Mapping[str, float] | Sequence[float] | Array | None = None,
+        load: Load | Mapping[str, Any] | None = None,
+        step_s: float = 0.01,
+        integrator: Integrator = ANY_STIFFNESS,
+    ) -> Response:
+        """The response over `duration_s`, sampled about every `step_s`.
+
+        initial: every state, or some by their names and the others as at rest; by default at rest.
+        load: one of `flexsurr.config.load`, or its keys as in config/studies, such as {"kind": "tip_force",
+        "force_N": 10.0, "history": {"kind": "sine", "frequency_rad_s": 50.0}}.
+
+        Warns with `OutOfRange` where a state leaves the training range, once. A simulation that fails ends
+        its response: see `trajectory.completed` and `trajectory.reason`. Raises ValueError for a state
+        that there is not, and for a load that the structure cannot feel.
+        """
+        if not (duration_s > 0.0 and step_s > 0.0):
+            raise ValueError(
+                f"duration_s, step_s: {duration_s}, {step_s} are not allowed; allowed: more than 0"
+            )
+        t = np.linspace(0.0, duration_s, max(round(duration_s / step_s), 1) + 1)
+        trajectory = simulate(self._under(load), t, self._state(initial), integrator)
+        x = trajectory.x
+        left = self.saved.outside(x)
+        if left:
+            warnings.warn(left, OutOfRange, stacklevel=2)
+        surrogate = self.saved.surrogate
+        energy = surrogate.energy(x) if isinstance(surrogate, Hamiltonian) else None
+        return Response(self.saved.run_id, trajectory, self.saved.tip(x), self.saved.twist(x), energy)
+
+    def _under(self, load: Load | Mapping[str, Any] | None) -> Model:
+        if load is None:
+            return self._model
+        if self.saved.basis is None:
+            raise ValueError(f"load: {self.saved.run_id} stands for no structure that could feel one")
+        checked: Load = TypeAdapter(Load).validate_python(load)
+        check_load(checked, self.saved.basis.structure)
+        return loaded(self._model, self.saved.basis, checked, "compiled")
+
+    def _state(self, initial: Mapping[str, float] | Sequence[float] | Array | None) -> Array:
+        d = len(self.state_names)
+        if initial is not None and not isinstance(initial, Mapping):
+            state = np.asarray(initial, dtype=np.float64)
+            if state.shape != (d,):
+                raise ValueError(
+                    f"initial: {d} numbers are needed, one for each of {', '.join(self.state_names)}"
+                )
+            return state
+        state = np.zeros(d)
+        if self.saved.basis is not None:
+            state[: d // 2] = find_equilibrium(self.saved.basis)
+        for name, value in (initial or {}).items():
+            if name not in self.state_names:
+                raise ValueError(f"initial: {name!r} is no state; allowed: {', '.join(self.state_names)}")
+            state[self.state_names.index(name)] = value
+        return state
+
+
+def load_surrogate(path: str | Path) -> LoadedSurrogate:
+    """The surrogate that training wrote to `path`.
+
+    Raises SurrogateFileError for a damaged or foreign file, OSError where there is none.
+    """
+    return LoadedSurrogate(saved_surrogate.load_surrogate(path))
