@@ -8,7 +8,7 @@ import tempfile
 import numpy as np
 from cantilever import cantilever_dataset
 
-from flexsurr.config.sweep import Trial
+from flexsurr.config.trial import trial_of
 from flexsurr.training import fit
 
 LONGEST_S = 10.0
@@ -39,7 +39,7 @@ def main() -> None:
     )
     for label, settings in TRIALS.items():
         with tempfile.TemporaryDirectory() as folder:
-            result = fit(Trial(**settings), dataset, folder)
+            result = fit(trial_of(**settings), dataset, folder)
         history = result.history
         best = np.minimum.accumulate(history.validation_loss)
         cells = [

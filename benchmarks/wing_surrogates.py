@@ -16,7 +16,7 @@ from wing import ACCURATE, FRESH, basis, datasets, starts, wing_model
 from flexsurr.beam import loaded
 from flexsurr.config.load import DistributedForce, Power, Spread
 from flexsurr.config.study import EvaluationSettings, Integrator, LearnedLoadSettings
-from flexsurr.config.sweep import Trial
+from flexsurr.config.trial import trial_of
 from flexsurr.evaluation.learned_loads import exact_forces, learn_forces, relative_error
 from flexsurr.simulation import rhs, simulate
 from flexsurr.surrogates import LearnedLoad, compiled
@@ -34,11 +34,13 @@ LOAD = DistributedForce(
 LOAD_ENDS_S = 5.0
 DEFAULT = Integrator(method="radau_iia_5")
 TRIALS = {
-    f"polynomial, degree {degree}": Trial(
+    f"polynomial, degree {degree}": trial_of(
         architecture="port_hamiltonian", degree=degree, optimiser="least_squares"
     )
     for degree in (4, 6, 8)
-} | {"network, 32 atan": Trial(architecture="port_hamiltonian", hidden=(32,), activation="atan", epochs=100)}
+} | {
+    "network, 32 atan": trial_of(architecture="port_hamiltonian", hidden=(32,), activation="atan", epochs=100)
+}
 
 
 @njit(error_model="numpy")

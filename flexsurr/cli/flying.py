@@ -47,5 +47,5 @@ def selected_networks(selection: Path, runs: Path) -> dict[str, CoefficientNetwo
     return {
         label: load_coefficient_network(runs / chosen[label]["run_id"] / "weights.npz")
         for label in labels
-        if chosen[label]["model"] == "network"
+        if chosen[label]["architecture"] == "network"
     }

@@ -9,10 +9,10 @@ from flexsurr.aerodynamics.sampling import draw_features, feature_intervals
 from flexsurr.aerodynamics.vortex_lattice import rebuilt
 from flexsurr.cli.command import Job, command
 from flexsurr.config.aircraft import Aircraft
-from flexsurr.config.coefficient_sweep import dataset_name
 from flexsurr.config.feature_limits import FeatureLimits
 from flexsurr.config.panels import PanelCounts
 from flexsurr.config.part import part_of
+from flexsurr.config.trial import sample_name
 from flexsurr.flight.airliner import flexible_airframe
 from flexsurr.flight.modes import free_modes
 from flexsurr.flight.stick_model import stick_model
@@ -41,7 +41,7 @@ def main(job: Job, output: Path) -> None:
     y = linear_in_modes(form, u) if job["lattice"] == "linear_in_modes" else form(u)
     metadata = SampleMetadata(
         study=job["study"],
-        sampling=dataset_name(job["sampling"], job["lattice"]),
+        sampling=sample_name(job["sampling"], job["lattice"]),
         seed=job["seed"],
         configuration=job["configuration"],
         first=job["first"],

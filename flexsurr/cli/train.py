@@ -14,7 +14,7 @@ from flexsurr.cli.command import Job, command
 from flexsurr.config.part import part_of
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Study
-from flexsurr.config.sweep import Trial
+from flexsurr.config.trial import Trial, configurations_of, settings_of, trial_of
 from flexsurr.storage import read_manifest, replacing, write_json
 from flexsurr.training import Fit, ShardedDataset, fit
 from flexsurr.training.configuration_samples import configuration_samples
@@ -40,14 +40,15 @@ def main(job: Job, manifest: list[Path], store: Path, folder: Path) -> None:
 
 
 def _train(job: Job, manifest: list[Path], store: Path, folder: Path) -> None:
-    trial, study = Trial.model_validate(job["trial"]), part_of(Study, job["part"])
+    trial, study = trial_of(**job["trial"]), part_of(Study, job["part"])
     basis = reduce(Structure.model_validate(job["structure"]), study.reduction)
+    configurations = configurations_of(trial)
     dataset: SampleSource
-    if trial.configurations is None:
+    if configurations is None:
         dataset = ShardedDataset(read_manifest(manifest[0]))
     else:
         ranges = study.dataset.initial_conditions
-        dataset = configuration_samples(basis, job["variant"], ranges, trial.configurations)
+        dataset = configuration_samples(basis, job["variant"], ranges, configurations)
     described = {**job, "dataset_sha256": dataset.sha256}
     write_json(folder / "parameters.json", described)
     page_store = read_store(store)
@@ -89,20 +90,19 @@ def _train(job: Job, manifest: list[Path], store: Path, folder: Path) -> None:
 
 
 def _figures(job: Job, trial: Trial, result: Fit, dataset_sha256: str) -> dict[str, Any]:
+    settings = settings_of(trial)
     return {
         "run_id": job["run_id"],
         "study": job["study"],
         "variant": job["variant"],
         # the same for all seeds, by which runs are gathered
-        "configuration": run_id(
-            trial.model_copy(update={"seed": None}), job["study"], job["variant"], job["data"]
-        ),
+        "configuration": run_id(trial, job["study"], job["variant"], job["data"], any_seed=True),
         "dataset": job["dataset"],
         "status": result.status,
         "reason": result.reason,
-        **trial.model_dump(mode="json", exclude={"epochs"}),
-        "hidden": "x".join(str(width) for width in trial.hidden or ()),
-        "epoch_limit": trial.epochs,
+        **settings,
+        "hidden": "x".join(str(width) for width in settings["hidden"] or ()),
+        "epoch_limit": settings["epochs"],
         "epochs": result.epochs,
         "best_epoch": result.best_epoch,
         "wall_s": result.wall_s,

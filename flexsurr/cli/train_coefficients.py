@@ -9,7 +9,7 @@ from typing import Any
 from flexsurr.cli.alone import alone_in
 from flexsurr.cli.command import Job, command
 from flexsurr.cli.frames import write_frame
-from flexsurr.config.coefficient_sweep import CoefficientTrial
+from flexsurr.config.trial import Map, MapNetwork, settings_of, trial_of
 from flexsurr.simulation.rhs import Array
 from flexsurr.storage import read_all_samples, write_json
 from flexsurr.surrogates.coefficient_network import save_coefficient_network
@@ -36,16 +36,17 @@ def main(job: Job, shards: list[Path], store: Path, folder: Path) -> None:
 
 
 def _train(job: Job, shards: list[Path], store: Path, folder: Path) -> None:
-    trial = CoefficientTrial.model_validate(job["trial"])
+    trial = trial_of(**job["trial"])
+    assert isinstance(trial, Map)
     samples = read_all_samples(shards, job["configuration"], job["samples"])
     data = coefficient_data(samples, job["held_out"], job["seed"])
     write_json(folder / "parameters.json", {**job, "dataset_sha256": data.sha256})
     with tracked(read_store(store), job["study"], job["run_id"], job["trial"]) as page:
-        if trial.model == "network":
+        if isinstance(trial, MapNetwork):
             predicted, figures = _network(trial, data, folder, page)
         else:
             start = time.perf_counter()
-            predicted = fit_coefficient_polynomial(data, DEGREES[trial.model])(data.u)
+            predicted = fit_coefficient_polynomial(data, DEGREES[trial.architecture])(data.u)
             figures = {"status": "finished", "reason": "", "wall_s": time.perf_counter() - start}
         table = accuracy(data, predicted, trial.label)
         write_frame(folder / "accuracy.parquet", table)
@@ -54,7 +55,7 @@ def _train(job: Job, shards: list[Path], store: Path, folder: Path) -> None:
             "run_id": job["run_id"],
             "study": job["study"],
             "label": trial.label,
-            **job["trial"],
+            **settings_of(trial),
             **figures,
             "train_nmse": float(table["train_nmse"].mean()),
             "validation_nmse": float(table["validation_nmse"].mean()),
@@ -69,7 +70,7 @@ def _train(job: Job, shards: list[Path], store: Path, folder: Path) -> None:
 
 
 def _network(
-    trial: CoefficientTrial, data: CoefficientData, folder: Path, page: PageTrial
+    trial: MapNetwork, data: CoefficientData, folder: Path, page: PageTrial
 ) -> tuple[Array, dict[str, Any]]:
     next_s = time.monotonic()
 

@@ -1,13 +1,13 @@
 """A study of samples: maps that stand for the aerodynamics of an aircraft, and its flights with them."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from flexsurr.config.flight import FlightSettings
 from flexsurr.config.panels import PanelCounts
 from flexsurr.config.schema import Record
-from flexsurr.config.study import Count
+from flexsurr.config.study import DEFAULT, Count
 
 
 class SampleSettings(Record):
@@ -39,3 +39,9 @@ class SampleStudy(Record):
     sweeps: Annotated[dict[str, str], Field(min_length=1)]
     dataset: SampleSettings = SampleSettings()
     flight: FlightSettings = FlightSettings()
+
+    @model_validator(mode="after")
+    def _has_a_default_sweep(self) -> Self:
+        if DEFAULT not in self.sweeps:
+            raise ValueError(f"sweeps: one of them is called {DEFAULT}")
+        return self

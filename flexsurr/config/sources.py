@@ -4,14 +4,13 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from flexsurr.config.aircraft import Aircraft
-from flexsurr.config.coefficient_sweep import CoefficientSweep
 from flexsurr.config.feature_limits import FeatureLimits
 from flexsurr.config.load import check_load
 from flexsurr.config.sample_study import SampleStudy
 from flexsurr.config.structure import Structure
-from flexsurr.config.study import Study
+from flexsurr.config.study import DEFAULT, Study
 from flexsurr.config.study_files import StudyFiles
-from flexsurr.config.sweep import Sweep
+from flexsurr.config.sweep import FieldSweep, MapSweep, Sweep
 
 
 @dataclass(frozen=True)
@@ -33,7 +32,7 @@ class ResolvedSampleStudy:
     study: SampleStudy
     aircraft: Aircraft
     limits: FeatureLimits
-    sweeps: Mapping[str, CoefficientSweep]
+    sweeps: Mapping[str, Sweep]
 
 
 AnyStudy = ResolvedStudy | ResolvedSampleStudy
@@ -43,7 +42,7 @@ def _trajectories(files: StudyFiles) -> ResolvedStudy:
     study = files.record(Study)
     structure = files.named(Structure, study.structure, "structure")
     others = [files.named(Structure, path, "frequencies_also_of") for path in study.frequencies_also_of]
-    sweeps = {name: files.named(Sweep, path, "sweeps", name) for name, path in study.sweeps.items()}
+    sweeps = {name: files.named(FieldSweep, path, "sweeps", name) for name, path in study.sweeps.items()}
     files.check()
     modes, most = study.reduction.modes, structure.coordinates
     if modes > most:
@@ -63,10 +62,11 @@ def _samples(files: StudyFiles) -> ResolvedSampleStudy:
     study = files.record(SampleStudy)
     aircraft = files.named(Aircraft, study.aircraft, "aircraft")
     limits = files.named(FeatureLimits, study.limits, "limits")
-    sweeps = {
-        name: files.named(CoefficientSweep, path, "sweeps", name) for name, path in study.sweeps.items()
-    }
+    sweeps = {name: files.named(MapSweep, path, "sweeps", name) for name, path in study.sweeps.items()}
     files.check()
+    if all(space.architecture != "network" for space in sweeps[DEFAULT].spaces):
+        problem = f"{study.sweeps[DEFAULT]!r} has no space of a network; one is needed to fly with"
+        files.refuse(problem, "sweeps", DEFAULT)
     return ResolvedSampleStudy(files.name, study, aircraft, limits, sweeps)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from flexsurr.aerodynamics.features import OUTPUT_GROUPS, SECOND_ORDER
-from flexsurr.config.coefficient_sweep import CoefficientTrial
+from flexsurr.config.trial import Iterative, MapNetwork
 from flexsurr.simulation.rhs import Array
 from flexsurr.surrogates.coefficient_network import (
     CoefficientNetwork,
@@ -60,7 +60,7 @@ def initial_weights(inputs: int, hidden: int, outputs: int, seed: int) -> Array:
 
 
 def fit_coefficients(
-    trial: CoefficientTrial, data: CoefficientData, folder: str | Path, report: Report | None = None
+    trial: MapNetwork, data: CoefficientData, folder: str | Path, report: Report | None = None
 ) -> CoefficientFit:
     """Fit a network, or four side by side, to `data`, resuming from the checkpoints in `folder`.
 
@@ -91,31 +91,30 @@ def fit_coefficients(
 
 
 def _fit_one(
-    trial: CoefficientTrial, data: CoefficientData, folder: Path, report: Report | None
+    trial: MapNetwork, data: CoefficientData, folder: Path, report: Report | None
 ) -> tuple[CoefficientNetwork, Progress, str]:
     """One network of all outputs of `data`, how it came about, and why it failed, or ""."""
-    assert trial.hidden is not None  # a trial of a network has all three
-    assert trial.activation is not None
-    assert trial.epochs is not None
+    assert isinstance(trial, Iterative)
+    (hidden,) = trial.hidden
     products = SECOND_ORDER if trial.inputs == "second_order" else ()
     x, y = with_products(data.scaled_u, products), data.scaled_y
     training, validation = (
-        CoefficientObjective.of(x[chosen], y[chosen], trial.hidden, trial.activation)
+        CoefficientObjective.of(x[chosen], y[chosen], hidden, trial.activation)
         for chosen in (~data.held_out, data.held_out)
     )
-    start = initial_weights(x.shape[1], trial.hidden, y.shape[1], trial.seed)
+    start = initial_weights(x.shape[1], hidden, y.shape[1], trial.seed)
     progress, reason = run_epochs(
         _optimiser(trial, training, start),
         validation,
         start,
-        Limits(trial.epochs, time_limit_s=trial.time_limit_s),
+        Limits(trial.epochs, trial.patience, trial.time_limit_s),
         folder,
         {"trial": trial.model_dump(mode="json"), "dataset": data.sha256, "outputs": data.output_names},
         report,
     )
     network = CoefficientNetwork(
         parameters=progress.best_parameters,
-        hidden=trial.hidden,
+        hidden=hidden,
         activation=trial.activation,
         input_low=data.input_low,
         input_high=data.input_high,
@@ -129,7 +128,7 @@ def _fit_one(
 
 
 def _fit_groups(
-    trial: CoefficientTrial, data: CoefficientData, folder: Path, report: Report | None
+    trial: MapNetwork, data: CoefficientData, folder: Path, report: Report | None
 ) -> tuple[CoefficientNetwork, dict[str, Progress], list[str]]:
     """A network for each of OUTPUT_GROUPS as one, how each came about, and why those that failed did."""
     networks: list[CoefficientNetwork] = []
@@ -152,7 +151,7 @@ def _report_after(
     report(before + epoch, train_loss, validation_loss, wall_s)
 
 
-def _optimiser(trial: CoefficientTrial, objective: CoefficientObjective, parameters: Array) -> Optimiser:
+def _optimiser(trial: Iterative, objective: CoefficientObjective, parameters: Array) -> Optimiser:
     if trial.optimiser == "lbfgs":
         from flexsurr.training.lbfgs import LBFGS  # here, for it imports torch
 

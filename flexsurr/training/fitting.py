@@ -5,12 +5,19 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal, TypeVar
+from typing import Literal
 
 import numpy as np
 import pandas as pd
 
-from flexsurr.config.sweep import Trial
+from flexsurr.config.trial import (
+    FieldNetwork,
+    FieldPolynomial,
+    FirstOrder,
+    Iterative,
+    PortHamiltonianNetwork,
+    Trial,
+)
 from flexsurr.storage import Scales
 from flexsurr.surrogates import (
     HNN,
@@ -44,9 +51,6 @@ SCALINGS: dict[str, Callable[[Scales], StateScaling]] = {
     "per_feature": feature_scaling,
     "min_max": min_max_scaling,
 }
-FIRST_ORDER = ("adam", "adam_cosine")
-
-Setting = TypeVar("Setting")
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,15 +90,16 @@ def fit(trial: Trial, source: SampleSource, folder: str | Path, report: Report |
     uninterrupted run (unless the time limit ends it).
     """
     folder = Path(folder)
-    if trial.optimiser == "least_squares":
+    if isinstance(trial, FieldPolynomial):
         return _fit_linear(trial, source, report)
+    assert isinstance(trial, Iterative)  # as everything but a polynomial is
     dataset = source.loaded()
     network, training, validation, optimiser = _begun(trial, dataset)
     progress, reason = run_epochs(
         optimiser,
         validation,
         network.parameters,
-        Limits(_of(trial.epochs), trial.patience, trial.time_limit_s),
+        Limits(trial.epochs, trial.patience, trial.time_limit_s),
         folder,
         {"trial": trial.model_dump(mode="json"), "dataset": dataset.sha256},
         report,
@@ -122,72 +127,65 @@ def fit(trial: Trial, source: SampleSource, folder: str | Path, report: Report |
     )
 
 
-def _begun(trial: Trial, dataset: Dataset) -> tuple[Network | NetworkPortHamiltonian, Loss, Loss, Optimiser]:
+def _begun(
+    trial: Iterative, dataset: Dataset
+) -> tuple[Network | NetworkPortHamiltonian, Loss, Loss, Optimiser]:
     """Random weights, their losses over training and validation samples, and what will make them better."""
     training = dataset.x_train, dataset.dx_train
     validation = dataset.x_validation, dataset.dx_validation
-    if trial.architecture == "port_hamiltonian":
-        hidden, activation, seed = _of(trial.hidden), _of(trial.activation), _of(trial.seed)
-        port = untrained_port_hamiltonian(dataset, hidden, activation, seed)
+    if isinstance(trial, PortHamiltonianNetwork):
+        port = untrained_port_hamiltonian(dataset, trial.hidden, trial.activation, trial.seed)
         inverse, forward = (PortHamiltonianObjective.of(port, *training, forward=f) for f in (False, True))
         held_out = PortHamiltonianObjective.of(port, *validation, forward=True)
         return port, forward, held_out, InverseThenForward(inverse, forward, port.parameters)
     network = _untrained(trial, dataset)
     objective = Objective.of(network, *training)
-    stepped = replace(objective, minimised=trial.loss or "nmse")
-    return network, objective, Objective.of(network, *validation), _optimiser(trial, stepped)
+    return network, objective, Objective.of(network, *validation), _optimiser(trial, objective)
 
 
-def _untrained(trial: Trial, dataset: Dataset) -> Network:
-    hidden = _of(trial.hidden)
+def _untrained(trial: Iterative, dataset: Dataset) -> Network:
+    assert isinstance(trial, FieldNetwork)
     form = NETWORKS[trial.architecture]
-    spread: Literal["torch", "wide"] = "torch" if trial.optimiser in FIRST_ORDER else "wide"
+    spread: Literal["torch", "wide"] = "torch" if isinstance(trial, FirstOrder) else "wide"
     return form(
-        parameters=initial_parameters(form, len(dataset.state_names), hidden, spread, _of(trial.seed)),
-        scaling=SCALINGS[_of(trial.scaling)](dataset.scales),
+        parameters=initial_parameters(form, len(dataset.state_names), trial.hidden, spread, trial.seed),
+        scaling=SCALINGS[trial.scaling](dataset.scales),
         state_names=dataset.state_names,
         state_units=dataset.state_units,
-        hidden=hidden,
-        activation=_of(trial.activation),
+        hidden=trial.hidden,
+        activation=trial.activation,
     )
 
 
-def _optimiser(trial: Trial, objective: Objective) -> Optimiser:
+def _optimiser(trial: Iterative, objective: Objective) -> Optimiser:
     parameters = objective.network.parameters
-    if trial.optimiser == "levenberg_marquardt":
-        return LevenbergMarquardt(objective, parameters)
+    if isinstance(trial, FirstOrder):
+        return Adam(
+            replace(objective, minimised=trial.loss),
+            parameters,
+            learning_rate=trial.learning_rate,
+            batch_size=trial.batch_size,
+            epochs=trial.epochs,
+            cosine=trial.optimiser == "adam_cosine",
+            precision=trial.precision,
+            seed=trial.seed,
+        )
     if trial.optimiser == "lbfgs":
         from flexsurr.training.lbfgs import LBFGS  # here, for it imports torch
 
         return LBFGS(objective, parameters)
-    return Adam(
-        objective,
-        parameters,
-        learning_rate=_of(trial.learning_rate),
-        batch_size=_of(trial.batch_size),
-        epochs=_of(trial.epochs),
-        cosine=trial.optimiser == "adam_cosine",
-        precision=_of(trial.precision),
-        seed=_of(trial.seed),
-    )
+    return LevenbergMarquardt(objective, parameters)
 
 
-def _of(setting: Setting | None) -> Setting:
-    """A setting that the trial's architecture or optimiser takes: a Trial has it then."""
-    assert setting is not None
-    return setting
-
-
-def _fit_linear(trial: Trial, source: SampleSource, report: Report | None) -> Fit:
-    degree = _of(trial.degree)
+def _fit_linear(trial: FieldPolynomial, source: SampleSource, report: Report | None) -> Fit:
     start, processor_start = time.perf_counter(), time.process_time()
     reason = ""
     surrogate: Surrogate
     if trial.architecture == "polynomial":
-        surrogate = fit_polynomial(source, degree)
+        surrogate = fit_polynomial(source, trial.degree)
     else:
         try:
-            surrogate = fit_port_hamiltonian(source, degree)
+            surrogate = fit_port_hamiltonian(source, trial.degree)
         except NotPositiveDefinite as failure:
             surrogate, reason = failure.surrogate, str(failure)
     training = FieldErrors.over(surrogate, source.training_blocks())

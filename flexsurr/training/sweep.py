@@ -6,9 +6,9 @@ import json
 from typing import Any
 
 import numpy as np
-from pydantic import ValidationError
 
-from flexsurr.config.sweep import Space, Sweep, Trial
+from flexsurr.config.sweep import Space, Sweep
+from flexsurr.config.trial import Trial, trial_of
 
 DIGITS = 10
 
@@ -31,12 +31,14 @@ def expand(sweep: Sweep) -> list[Trial]:
     return list(trials)
 
 
-def run_id(trial: Trial, study: str, variant: str, data: str) -> str:
+def run_id(trial: Trial, study: str, variant: str, data: str, any_seed: bool = False) -> str:
     """The architecture and ten hex digits of the hash of everything that names a run.
 
-    `data` is a hash of all that its dataset depends on: a run on other data is another run.
+    `data` is a hash of all that its dataset depends on: a run on other data is another run. With `any_seed`
+    the name is that of all runs which differ in nothing but their seed.
     """
-    content = {"study": study, "variant": variant, "data": data, "trial": trial.model_dump(mode="json")}
+    settings = trial.model_dump(mode="json", exclude={"seed"} if any_seed else None)
+    content = {"study": study, "variant": variant, "data": data, "trial": settings}
     canonical = json.dumps(content, sort_keys=True, separators=(",", ":"))
     return f"{trial.architecture}-{hashlib.sha256(canonical.encode()).hexdigest()[:DIGITS]}"
 
@@ -52,8 +54,7 @@ def _combinations(space: Space) -> list[dict[str, Any]]:
 
 def _trial(number: int, combination: dict[str, Any]) -> Trial:
     try:
-        return Trial(**combination)
-    except ValidationError as error:
-        reasons = "; ".join(detail["msg"].removeprefix("Value error, ") for detail in error.errors())
+        return trial_of(**combination)
+    except ValueError as error:
         shown = ", ".join(f"{key}: {value}" for key, value in combination.items())
-        raise ValueError(f"spaces, number {number} ({shown}): {reasons}") from None
+        raise ValueError(f"spaces, number {number} ({shown}): {error}") from None

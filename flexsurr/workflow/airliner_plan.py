@@ -5,16 +5,16 @@ import json
 from functools import cached_property
 from typing import Any, get_args
 
-from flexsurr.config.coefficient_sweep import CoefficientTrial, LatticeForm, Sampling, dataset_name
 from flexsurr.config.errors import ConfigurationError
 from flexsurr.config.sources import ResolvedSampleStudy
 from flexsurr.config.study import DEFAULT
-from flexsurr.training.coefficient_sweep import coefficient_run_id, expand_coefficients
+from flexsurr.config.trial import LatticeForm, Map, Sampling, sample_name
+from flexsurr.training.sweep import expand, run_id
 
 Job = dict[str, Any]
 
 _DATASETS = {
-    dataset_name(sampling, lattice): (sampling, lattice)
+    sample_name(sampling, lattice): (sampling, lattice)
     for sampling in get_args(Sampling)
     for lattice in get_args(LatticeForm)
 }
@@ -26,15 +26,20 @@ class AirlinerPlan:
     def __init__(self, airliner: ResolvedSampleStudy) -> None:
         self.airliner = airliner
         try:
-            self._trials = expand_coefficients(airliner.sweeps[DEFAULT].spaces)
+            self._trials = expand(airliner.sweeps[DEFAULT])
         except ValueError as error:
             raise ConfigurationError([f"{airliner.study.sweeps[DEFAULT]}: {error}"]) from None
 
     @cached_property
-    def runs(self) -> dict[str, CoefficientTrial]:
+    def runs(self) -> dict[str, Map]:
         """Trials by their run_id."""
-        hashes = {trial.dataset: self.configuration(trial.dataset) for trial in self._trials}
-        return {coefficient_run_id(trial, hashes): trial for trial in self._trials}
+        study = self.airliner.name
+        runs: dict[str, Map] = {}
+        for trial in self._trials:
+            assert isinstance(trial, Map)  # as every trial of a MapSweep is
+            data = self.configuration(trial.dataset)
+            runs[f"{study}-{run_id(trial, study, trial.dataset, data)}"] = trial
+        return runs
 
     @property
     def shards(self) -> int:

@@ -18,7 +18,7 @@ from flexsurr.config.part import values_of
 from flexsurr.config.settings import Configuration
 from flexsurr.config.sources import ResolvedSampleStudy, ResolvedStudy
 from flexsurr.config.study import CONFIGURATIONS, DEFAULT, Study, Variant
-from flexsurr.config.sweep import Trial
+from flexsurr.config.trial import Trial, configurations_of
 from flexsurr.report.catalogue import FIGURES, TABLES, Product
 from flexsurr.training.sweep import expand, run_id
 from flexsurr.workflow.airliner_plan import AirlinerPlan
@@ -138,7 +138,7 @@ class Plan:
                 folder = data_folder(variant, dataset)
                 data, ranges = self.data_hash(study, folder), _hash(self._configurations(study, folder))
                 for trial in trials:
-                    key = run_id(trial, study, variant, ranges if trial.configurations else data)
+                    key = run_id(trial, study, variant, ranges if configurations_of(trial) else data)
                     sweeps[sweep][key] = Run(study, variant, dataset, trial)
         return sweeps
 
@@ -200,15 +200,15 @@ class Plan:
             "run_id": key,
             "study": run.study,
             "variant": run.variant,
-            "dataset": CONFIGURATIONS if run.trial.configurations else run.dataset,
-            "data": _hash(values) if run.trial.configurations else self.data_hash(run.study, run.data),
+            "dataset": CONFIGURATIONS if configurations_of(run.trial) else run.dataset,
+            "data": _hash(values) if configurations_of(run.trial) else self.data_hash(run.study, run.data),
             "trial": run.trial.model_dump(mode="json"),
         }
 
     def trains_on(self, key: str) -> list[str]:
         """The manifest that a run reads, below the results; none where it needs no simulation."""
         run = self.runs[key]
-        return [] if run.trial.configurations else [f"datasets/{run.study}/{run.data}/manifest.json"]
+        return [] if configurations_of(run.trial) else [f"datasets/{run.study}/{run.data}/manifest.json"]
 
     def _configurations(self, study: str, data: str) -> Job:
         values = values_of(self._settings(study, data), SAMPLED)

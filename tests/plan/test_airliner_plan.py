@@ -11,6 +11,7 @@ from flexsurr.aerodynamics.sampling import draw_features, feature_intervals
 from flexsurr.config.errors import ConfigurationError
 from flexsurr.config.feature_limits import load_feature_limits
 from flexsurr.config.settings import load
+from flexsurr.config.trial import MapNetwork
 from flexsurr.workflow.airliner_plan import AirlinerPlan
 from flexsurr.workflow.plan import Plan
 
@@ -46,8 +47,9 @@ def test_shards_cover_all_samples_once():
 
 def test_there_are_baselines_and_the_network_of_the_study():
     trials = airliner(ROOT).runs.values()
-    assert {trial.model for trial in trials} == {"network", "linear", "quadratic"}
-    assert any((trial.hidden, trial.activation, trial.epochs) == (75, "tanh", 250) for trial in trials)
+    assert {trial.architecture for trial in trials} == {"network", "linear", "quadratic"}
+    networks = [trial for trial in trials if isinstance(trial, MapNetwork)]
+    assert (75, "tanh", 250) in [(trial.hidden[0], trial.activation, trial.epochs) for trial in networks]
 
 
 def test_a_changed_limit_asks_for_new_samples_and_a_changed_seed_of_weights_does_not(copy):
@@ -73,8 +75,13 @@ def test_a_changed_limit_asks_for_new_samples_and_a_changed_seed_of_weights_does
         ),
         (LIMITS, "high: 0.80", "high: 0.95", r"mach: 0\.55 to 0\.95 is not allowed.*Prandtl"),
         (LIMITS, "beta_deg:", "betta_deg:", "betta_deg.*did you mean 'beta_deg'"),
-        (SWEEP, "{model: linear}", "{model: linear, hidden: [5]}", "least squares"),
-        (SWEEP, "hidden: [75]", "hidden: []", r"hidden.*empty"),
+        (
+            SWEEP,
+            "{architecture: linear,",
+            "{architecture: linear, hidden: [[5]],",
+            "hidden does nothing with linear",
+        ),
+        (SWEEP, "hidden: [[75]]", "hidden: []", r"hidden.*empty"),
         (SWEEP, "epochs: [250]", "epoch: [250]", r"spaces\[2\]\.epoch: unknown key.*did you mean 'epochs'"),
         (
             STUDY,
@@ -82,6 +89,8 @@ def test_a_changed_limit_asks_for_new_samples_and_a_changed_seed_of_weights_does
             "source: sample",
             r"source: 'sample' is not allowed",
         ),
+        (SWEEP, "hidden: [[75]]", "hidden: [[75, 5]]", r"hidden\[0\]: one hidden layer, not 2"),
+        (SWEEP, "architecture: linear", "architecture: hnn", r"'hnn' is not allowed.*'linear'.*'network'"),
         (STUDY, "held_out: 0.2", "held_out: 1.0", "held_out"),
         (STUDY, "wing: [24, 5]", "wing: [24, 1]", "wing"),
     ],

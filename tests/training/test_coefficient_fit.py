@@ -12,13 +12,12 @@ from flexsurr.aerodynamics.features import (
     FEATURES,
     OUTPUT_GROUPS,
 )
-from flexsurr.config.coefficient_sweep import CoefficientSpace, CoefficientTrial
+from flexsurr.config.trial import trial_of
 from flexsurr.storage import SampleMetadata, Samples
 from flexsurr.training.coefficient_accuracy import accuracy, held_out_errors
 from flexsurr.training.coefficient_baselines import fit_coefficient_polynomial
 from flexsurr.training.coefficient_data import coefficient_data
 from flexsurr.training.coefficient_fit import fit_coefficients
-from flexsurr.training.coefficient_sweep import coefficient_run_id, expand_coefficients
 
 LOW, HIGH = np.array([-2.0, 0.0, 100.0]), np.array([1.0, 0.5, 300.0])
 
@@ -45,7 +44,7 @@ def quadratic_samples(count: int = 300) -> Samples:
 
 
 DATA = coefficient_data(quadratic_samples(), held_out=0.2, seed=1)
-TRIAL = CoefficientTrial(hidden=8, activation="tanh", optimiser="levenberg_marquardt", epochs=30)
+TRIAL = trial_of(architecture="network", hidden=(8,), activation="tanh", epochs=30)
 
 
 def test_a_fifth_is_held_out_and_features_are_scaled_to_one():
@@ -120,7 +119,7 @@ def test_four_networks_are_the_four_fits_of_their_outputs(tmp_path):
     samples = quadratic_samples()
     metadata = dataclasses.replace(samples.metadata, **names)
     data = coefficient_data(dataclasses.replace(samples, y=y, metadata=metadata), 0.2, 1)
-    trial = TRIAL.model_copy(update={"hidden": 4, "epochs": 5, "networks": "four"})
+    trial = TRIAL.model_copy(update={"hidden": (4,), "epochs": 5, "networks": "four"})
     reported = []
     fit = fit_coefficients(trial, data, tmp_path, lambda epoch, *losses: reported.append(epoch))
     assert reported == list(range(1, 21))
@@ -152,37 +151,14 @@ def test_with_second_order_terms_a_product_of_two_features_is_learned_by_less(tm
         output_units=("1",),
     )
     data = coefficient_data(Samples(u, y, metadata), 0.2, 1)
-    plain = TRIAL.model_copy(update={"hidden": 1, "epochs": 20})
+    plain = TRIAL.model_copy(update={"hidden": (1,), "epochs": 20})
     second = plain.model_copy(update={"inputs": "second_order"})
     errors = [fit_coefficients(trial, data, tmp_path).validation_nmse for trial in (plain, second)]
     assert errors[1] < 0.1 * errors[0]
 
 
 def test_lbfgs_lessens_the_loss_too(tmp_path):
-    trial = TRIAL.model_copy(update={"optimiser": "lbfgs", "epochs": 40})
+    trial = trial_of(**TRIAL.model_dump() | {"optimiser": "lbfgs", "epochs": 40})
     fit = fit_coefficients(trial, DATA, tmp_path)
     losses = fit.history["train_loss"]
     assert losses.iloc[-1] < 0.1 * losses.iloc[0]
-
-
-def test_trials_have_names_that_are_their_content():
-    spaces = (
-        CoefficientSpace(model="linear"),
-        CoefficientSpace(
-            hidden=(5, 6),
-            activation=("tanh", "atan"),
-            optimiser=("levenberg_marquardt",),
-            epochs=(3,),
-            sampling=("sobol",),
-        ),
-    )
-    trials = expand_coefficients(spaces)
-    assert [trial.hidden for trial in trials] == [None, 5, 5, 6, 6]
-    hashes = {"pseudo_random": "a", "sobol": "b"}
-    names = {coefficient_run_id(trial, hashes) for trial in trials}
-    assert len(names) == 5
-    assert coefficient_run_id(trials[0], hashes) in names
-    assert coefficient_run_id(trials[0], {**hashes, "pseudo_random": "c"}) not in names
-    assert coefficient_run_id(trials[1], {**hashes, "pseudo_random": "c"}) in names
-    with pytest.raises(ValueError, match=r"number 1 .*takes hidden"):
-        expand_coefficients((CoefficientSpace(hidden=(5,)),))

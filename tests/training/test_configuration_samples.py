@@ -11,7 +11,7 @@ from test_inverse_dynamics import R, truth_of
 from flexsurr.beam import draw_initial_conditions, reduce, reduced_order
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import InitialConditions, Integrator, Reduction
-from flexsurr.config.sweep import Trial
+from flexsurr.config.trial import trial_of
 from flexsurr.simulation import simulate
 from flexsurr.training import fit, nmse
 from flexsurr.training.configuration_samples import ConfigurationSamples, configuration_samples
@@ -121,7 +121,7 @@ def test_fitted_without_a_simulation_it_holds_on_trajectories():
 )
 def test_every_kind_of_trial_takes_them(tmp_path, values):
     samples = configuration_samples(basis_of(), "hamiltonian", ANY, 300)
-    result = fit(Trial(**values), samples, tmp_path)
+    result = fit(trial_of(**values), samples, tmp_path)
     assert result.status == "finished"
     assert result.validation_nmse < 0.5
 
@@ -137,7 +137,7 @@ def test_an_undamped_beam_needs_no_other_weights():
 def test_masses_that_are_none_are_a_failure_with_a_reason(tmp_path):
     samples = known(truth_of(3))
     turned = replace(samples, mass=-samples.mass)
-    trial = Trial(architecture="port_hamiltonian", degree=4, optimiser="least_squares")
+    trial = trial_of(architecture="port_hamiltonian", degree=4, optimiser="least_squares")
     result = fit(trial, turned, tmp_path)
     assert result.status == "failed"
     assert "not positive definite at q = (" in result.reason

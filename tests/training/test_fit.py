@@ -7,20 +7,20 @@ import numpy as np
 import pytest
 from oscillator import free_responses
 
-from flexsurr.config.sweep import Trial
+from flexsurr.config.trial import trial_of
 from flexsurr.surrogates import load, save
 from flexsurr.training import fit, nmse
 from flexsurr.training.checkpoint import NAME
 
 DATASET = free_responses()
 COMMON = {"hidden": (6,), "activation": "softplus"}
-LM = Trial(architecture="hnn", **COMMON, epochs=25)
-ADAM = Trial(
+LM = trial_of(architecture="hnn", **COMMON, epochs=25)
+ADAM = trial_of(
     architecture="hnn", **COMMON, optimiser="adam_cosine", epochs=25, batch_size=32, learning_rate=0.02
 )
 SINGLE = ADAM.model_copy(update={"optimiser": "adam", "precision": "single"})
-BFGS = Trial(architecture="hnn", **COMMON, optimiser="lbfgs", epochs=25)
-POLYNOMIAL = Trial(architecture="polynomial", degree=6, optimiser="least_squares")
+BFGS = trial_of(architecture="hnn", **COMMON, optimiser="lbfgs", epochs=25)
+POLYNOMIAL = trial_of(architecture="polynomial", degree=6, optimiser="least_squares")
 ITERATIVE = {"levenberg_marquardt": LM, "adam_cosine": ADAM, "adam, single": SINGLE, "lbfgs": BFGS}
 
 
@@ -166,5 +166,5 @@ def test_seeds_differ(tmp_path):
 
 def test_levenberg_marquardt_is_accurate(tmp_path):
     """Eight neurons, from a few hundred samples: far below what first-order methods reach."""
-    trial = Trial(architecture="hnn", hidden=(8,), activation="softplus", epochs=200)
+    trial = trial_of(architecture="hnn", hidden=(8,), activation="softplus", epochs=200)
     assert fit(trial, free_responses(12, 60), tmp_path).validation_nmse < 1e-6

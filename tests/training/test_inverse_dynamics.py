@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from oscillator import STIFFNESS, free_responses
 
-from flexsurr.config.sweep import Trial
+from flexsurr.config.trial import trial_of
 from flexsurr.surrogates import PairScaling, PolynomialPortHamiltonian
 from flexsurr.surrogates.monomials import monomials_to_degree
 from flexsurr.surrogates.packed import pack
@@ -97,7 +97,7 @@ def test_a_mass_matrix_that_is_none_is_a_failure_with_a_reason(tmp_path):
     """A field whose momentum turns against its velocity: the best M is negative."""
     dataset = sampled(truth_of(4))
     turned = replace(dataset, dx_train=dataset.dx_train * [-1, -1, 1, 1])
-    trial = Trial(architecture="port_hamiltonian", degree=2, optimiser="least_squares")
+    trial = trial_of(architecture="port_hamiltonian", degree=2, optimiser="least_squares")
     result = fit(trial, turned, tmp_path)
     assert result.status == "failed"
     assert "of degree 2 is not positive definite at q = (" in result.reason
@@ -105,7 +105,7 @@ def test_a_mass_matrix_that_is_none_is_a_failure_with_a_reason(tmp_path):
 
 def test_a_fit_says_how_well_each_state_is_met(tmp_path):
     dataset = sampled(truth_of(5))
-    trial = Trial(architecture="port_hamiltonian", degree=2, optimiser="least_squares")
+    trial = trial_of(architecture="port_hamiltonian", degree=2, optimiser="least_squares")
     result = fit(trial, dataset, tmp_path)
     assert (result.status, result.epochs, result.parameters) == ("finished", 1, 3 * (4 + 2))
     assert len(result.validation_nmse_per_state) == 4

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flexsurr.config.sweep import Trial
+from flexsurr.config.trial import trial_of
 from flexsurr.surrogates import PairScaling, PolynomialPortHamiltonian, load, save
 from flexsurr.training import fit, nmse, split_dataset
 from flexsurr.training.inverse_dynamics import channel_spread
@@ -13,7 +13,7 @@ from flexsurr.training.port_hamiltonian_objective import PortHamiltonianObjectiv
 from flexsurr.training.port_hamiltonian_training import untrained_port_hamiltonian
 
 NAMES = ("eta_1", "eta_2", "p_1", "p_2")
-TRIAL = Trial(architecture="port_hamiltonian", hidden=(6,), activation="atan", epochs=70)
+TRIAL = trial_of(architecture="port_hamiltonian", hidden=(6,), activation="atan", epochs=70)
 
 
 def samples(odd: float, number=240, seed=0):

@@ -12,14 +12,14 @@ from hypothesis import strategies as st
 from oscillator import NAMES, UNITS, field
 from shard_files import write_dataset
 
-from flexsurr.config.sweep import Trial
+from flexsurr.config.trial import trial_of
 from flexsurr.storage import Scales, StorageError, manifest, read_manifest
 from flexsurr.training import ShardedDataset, fit, load_dataset
 from flexsurr.training.dataset import Dataset
 
 TRIALS = {
-    "polynomial": Trial(architecture="polynomial", degree=4, optimiser="least_squares"),
-    "port_hamiltonian": Trial(architecture="port_hamiltonian", degree=2, optimiser="least_squares"),
+    "polynomial": trial_of(architecture="polynomial", degree=4, optimiser="least_squares"),
+    "port_hamiltonian": trial_of(architecture="port_hamiltonian", degree=2, optimiser="least_squares"),
 }
 TRAJECTORIES = 8
 of_both = pytest.mark.parametrize("trial", TRIALS.values(), ids=TRIALS)
@@ -140,7 +140,7 @@ def test_a_damaged_shard_ends_the_fit_with_its_name(trial, tmp_path):
 def test_what_needs_all_samples_loads_them(tmp_path):
     """A network of the streamed dataset is that of the loaded one, to the last digit."""
     source = ShardedDataset(read_manifest(written(tmp_path, [3, 5], 20)))
-    trial = Trial(
+    trial = trial_of(
         architecture="hnn", hidden=(4,), activation="tanh", optimiser="levenberg_marquardt", epochs=3
     )
     results = [fit(trial, data, tmp_path / name) for data, name in ((source, "a"), (source.loaded(), "b"))]

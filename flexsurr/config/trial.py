@@ -1,0 +1,272 @@
+"""Trials: what is trained and by which optimiser, each with settings of its own.
+
+A trial joins the record of an architecture with that of an optimiser. `isinstance` tells which, and so what
+settings there are; whatever neither record takes is refused. A new architecture or optimiser is a record,
+listed in FIELDS, MAPS or OPTIMISERS: sweeps and tables follow.
+"""
+
+from collections.abc import Iterable
+from functools import cache
+from types import NoneType
+from typing import Annotated, Any, ClassVar, Literal, cast, get_args
+
+from pydantic import AfterValidator, Field, ValidationError, create_model
+
+from flexsurr.config.activation import Activation
+from flexsurr.config.schema import Record
+from flexsurr.config.structure import Positive
+from flexsurr.config.study import Count
+
+ScalingKind = Literal["canonical", "per_feature", "min_max"]
+Sampling = Literal["pseudo_random", "sobol"]
+LatticeForm = Literal["full", "linear_in_modes"]
+Layers = Annotated[tuple[Count, ...], Field(min_length=1)]
+
+
+def _one(layers: tuple[int, ...]) -> tuple[int, ...]:
+    if len(layers) != 1:
+        raise ValueError(f"one hidden layer, not {len(layers)}")
+    return layers
+
+
+OneLayer = Annotated[Layers, AfterValidator(_one)]
+
+
+class Architecture(Record):
+    """What is trained. `optimisers` are those that can."""
+
+    architecture: str
+
+    optimisers: ClassVar[tuple[str, ...]] = ("least_squares",)
+
+
+class StateField(Architecture):
+    """What gives the rates of the states.
+
+    With a number of `configurations` it is trained on those, sampled without a simulation, not on a dataset.
+    """
+
+    configurations: Count | None = None
+
+
+class FieldNetwork(StateField):
+    """A network of the states' rates; `scaling` is that of states and rates."""
+
+    architecture: Literal["mlp", "hnn", "dissipative_hnn"]
+    hidden: Layers
+    activation: Activation
+    scaling: ScalingKind = "canonical"
+
+    optimisers = ("levenberg_marquardt", "lbfgs", "adam", "adam_cosine")
+
+
+class FieldPolynomial(StateField):
+    """A polynomial Hamiltonian, or polynomials of mass matrix, stiffness and damping."""
+
+    architecture: Literal["polynomial", "port_hamiltonian"]
+    degree: Count
+
+
+class PortHamiltonianNetwork(StateField):
+    """A network of the mass matrix."""
+
+    architecture: Literal["port_hamiltonian"]
+    hidden: OneLayer
+    activation: Activation
+
+    optimisers = ("levenberg_marquardt",)
+
+
+class Map(Architecture):
+    """What gives coefficients of features, and how the samples that it is fitted to are drawn.
+
+    `lattice` is what was sampled: linear_in_modes is to first order in the modal coordinates and velocities.
+    """
+
+    sampling: Sampling = "pseudo_random"
+    lattice: LatticeForm = "full"
+
+    @property
+    def dataset(self) -> str:
+        """The name of the samples that it is fitted to."""
+        return sample_name(self.sampling, self.lattice)
+
+    @property
+    def label(self) -> str:
+        """What tables call it: all trials with the same label are one kind of model."""
+        return self.architecture + ("_linear_modes" if self.lattice == "linear_in_modes" else "")
+
+
+def sample_name(sampling: str, lattice: str) -> str:
+    """The name of the samples that are drawn like this from a form of the lattice."""
+    return sampling if lattice == "full" else f"{sampling}-{lattice}"
+
+
+class MapPolynomial(Map):
+    """A baseline: first or second order in the features."""
+
+    architecture: Literal["linear", "quadratic"]
+
+
+class MapNetwork(Map):
+    """A network of one hidden layer. `inputs`: second_order adds products of features.
+
+    `networks`: four is one for drag, one for the longitudinal, one for the lateral-directional outputs, one
+    for the modal ones, each with `hidden` neurons.
+    """
+
+    architecture: Literal["network"]
+    networks: Literal["one", "four"] = "one"
+    inputs: Literal["features", "second_order"] = "features"
+    hidden: OneLayer
+    activation: Activation
+
+    optimisers = ("levenberg_marquardt", "lbfgs")
+
+    @property
+    def label(self) -> str:
+        """That of its kind, the four networks with their number of neurons."""
+        kind = f"four_networks_of_{self.hidden[0]}" if self.networks == "four" else "network"
+        second = "_second_order" if self.inputs == "second_order" else ""
+        return kind + second + super().label.removeprefix("network")
+
+
+class Optimiser(Record):
+    """By what it is trained."""
+
+    optimiser: str
+
+
+class LeastSquares(Optimiser):
+    """Linear least squares, without iteration."""
+
+    optimiser: Literal["least_squares"]
+
+
+class Iterative(Optimiser):
+    """Epoch after epoch, at most `epochs`, or until validation has not improved for `patience`.
+
+    `keep` says whether the weights are those that validated best or those of the last epoch.
+    """
+
+    epochs: Count = 1000
+    patience: Count | None = None
+    time_limit_s: Positive | None = None
+    keep: Literal["best", "last"] = "best"
+    seed: Annotated[int, Field(ge=0)] = 0
+
+
+class FullBatch(Iterative):
+    """Every step sees all samples."""
+
+    optimiser: Literal["levenberg_marquardt", "lbfgs"]
+
+
+class FirstOrder(Iterative):
+    """Steps along the gradient of a batch, at a constant rate or one that falls to 0 as half a cosine.
+
+    `loss` is what they minimise: the nmse, the mean of squares of the scaled rates' errors, or eqs. 11 and 12
+    as printed (`norms`: a sample's ‖error of q̇‖ + ‖error of ṗ‖, and their mean over a batch).
+    """
+
+    optimiser: Literal["adam", "adam_cosine"]
+    learning_rate: Positive
+    batch_size: Count
+    precision: Literal["single", "double"] = "double"
+    loss: Literal["nmse", "mean_square", "norms"] = "nmse"
+
+
+class Trial(Architecture, Optimiser):
+    """The resolved parameters of one training run, apart from its data: `trial_of` makes one.
+
+    Hashed into the run_id.
+    """
+
+
+FIELDS: tuple[type[Architecture], ...] = (FieldNetwork, FieldPolynomial, PortHamiltonianNetwork)
+"""What a field may be learned by; of one name, the record fits that takes most of what is given."""
+
+MAPS: tuple[type[Architecture], ...] = (MapPolynomial, MapNetwork)
+"""What a map may be learned by."""
+
+OPTIMISERS: tuple[type[Optimiser], ...] = (FullBatch, FirstOrder, LeastSquares)
+"""What trains; the first name is the one that holds where none is given."""
+
+
+def named(records: Iterable[type[Record]], key: str) -> list[str]:
+    """The names that the literals of `key` give the records, each once."""
+    literals = [record.model_fields[key].annotation for record in records]
+    return list(dict.fromkeys(name for literal in literals for name in get_args(literal)))
+
+
+def trial_of(**settings: Any) -> Trial:
+    """The trial with these settings; one that is None is as good as not given.
+
+    Raises ValueError for what does nothing, what is missing, and what is not allowed.
+    """
+    given = {key: value for key, value in settings.items() if value is not None}
+    (first, *_) = named(OPTIMISERS, "optimiser")
+    given.setdefault("optimiser", first)
+    forms = _called("architecture", given.get("architecture"), (*FIELDS, *MAPS))
+    form = max(forms, key=lambda form: len(form.model_fields.keys() & given.keys()))
+    (optimiser,) = _called("optimiser", given["optimiser"], OPTIMISERS)
+    takes = form.model_fields | optimiser.model_fields
+    what, by = given["architecture"], given["optimiser"]
+    if nothing := sorted(given.keys() - takes):
+        known = any(nothing[0] in each.model_fields for each in OPTIMISERS)
+        allowed = ", ".join(sorted(takes.keys() - {"architecture", "optimiser"})) or "nothing more"
+        raise ValueError(f"{nothing[0]} does nothing with {by if known else what}; allowed: {allowed}")
+    if missing := [key for key, field in takes.items() if field.is_required() and key not in given]:
+        raise ValueError(f"{what} with {by} takes {' and '.join(missing)}")
+    if by not in form.optimisers:
+        allowed = ", ".join(form.optimisers)
+        raise ValueError(f"optimiser: {by!r} does not fit this {what}; allowed: {allowed}")
+    try:
+        return _joined(form, optimiser)(**given)
+    except ValidationError as error:
+        problems = [
+            f"{'.'.join(map(str, detail['loc']))}: {detail['msg'].removeprefix('Value error, ')}"
+            for detail in error.errors()
+        ]
+        raise ValueError("; ".join(problems)) from None
+
+
+def settings_of(trial: Trial) -> dict[str, Any]:
+    """Every setting that a trial of its kind may have, as JSON has it: None where this one takes none."""
+    values = trial.model_dump(mode="json")
+    kind = MAPS if isinstance(trial, Map) else FIELDS
+    return {key: values.get(key) for key in dimensions(kind)}
+
+
+def configurations_of(trial: Architecture) -> int | None:
+    """How many configurations a trial samples in place of a dataset; None where it trains on one."""
+    return trial.configurations if isinstance(trial, StateField) else None
+
+
+def dimensions(architectures: Iterable[type[Architecture]]) -> dict[str, Any]:
+    """The types of everything that trials of `architectures` take, by name: what a sweep may vary."""
+    forms = tuple(architectures)
+    found: dict[str, Any] = {
+        "architecture": Literal[*named(forms, "architecture")],
+        "optimiser": Literal[*named(OPTIMISERS, "optimiser")],
+    }
+    for record in (*forms, *OPTIMISERS):
+        for key, field in record.model_fields.items():
+            of_union = get_args(field.annotation)
+            # `patience: Count | None` is varied among counts
+            value = of_union[0] if NoneType in of_union else field.annotation
+            found.setdefault(key, Annotated[value, *field.metadata] if field.metadata else value)
+    return found
+
+
+def _called(key: str, name: Any, records: Iterable[type[Record]]) -> list[Any]:
+    found = [record for record in records if name in named([record], key)]
+    if not found:
+        raise ValueError(f"{key}: {name!r} is not allowed; allowed: {', '.join(named(records, key))}")
+    return found
+
+
+@cache
+def _joined(form: type[Architecture], optimiser: type[Optimiser]) -> type[Trial]:
+    bases: Any = (form, optimiser, Trial)
+    return cast("type[Trial]", create_model(f"{form.__name__}By{optimiser.__name__}", __base__=bases))
