@@ -10,9 +10,10 @@ INSTALLED := $(VENV)/.installed
 export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
 export MLFLOW_DISABLE_TELEMETRY := true
 
-.PHONY: help reproduce test check ui benchmark browser clean
+.PHONY: help install reproduce test check ui benchmark browser clean
 
 help:
+	@echo "make install      the environment alone, in .venv"
 	@echo "make reproduce    the whole default study, results/report.html   (CORES=2)"
 	@echo "make test         every check and test"
 	@echo "make ui           the page on which runs are compared, on this machine only   (PORT=5000)"
@@ -25,6 +26,8 @@ $(INSTALLED): environment.txt pyproject.toml
 	$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check -r environment.txt
 	$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
 	touch $@
+
+install: $(INSTALLED)
 
 reproduce: $(INSTALLED)
 	snakemake --cores $(CORES) $(SNAKEMAKE_OPTIONS)
