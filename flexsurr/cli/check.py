@@ -5,6 +5,7 @@ from pathlib import Path
 
 from flexsurr.cli.command import personal
 from flexsurr.config.settings import load
+from flexsurr.config.sources import ResolvedFiles
 from flexsurr.workflow.plan import Plan
 
 CONFIG = Path("config/config.yaml")
@@ -29,6 +30,9 @@ def main(configfile: list[str], directory: Path) -> None:
     plan = Plan(load(directory, [str(CONFIG), *configfile]))
     for name, resolved in plan.studies.items():
         runs = len(plan.runs_of(name))
+        if isinstance(resolved, ResolvedFiles):
+            print(f"{name}: {len(plan.sources(name))} files, {runs} runs")
+            continue
         variants, datasets = len(plan.variants(name)), len(resolved.study.datasets)
         print(
             f"{name}: {resolved.structure.name}, {variants} variants, {datasets} datasets each, {runs} runs"

@@ -2,21 +2,27 @@
 
 import json
 import logging
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from flexsurr.beam import EquilibriumNotFound, reduce
 from flexsurr.cli.command import Job, command
+from flexsurr.config.files import FilesStudy
 from flexsurr.config.part import part_of
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Study
 from flexsurr.evaluation.held_out import held_out_errors
+from flexsurr.evaluation.rollouts import HeldOutTrajectories, rollout_errors
 from flexsurr.evaluation.selection import long_response_errors, long_responses
-from flexsurr.storage import write_json
+from flexsurr.storage import read_manifest, write_json
 from flexsurr.surrogates import load
 from flexsurr.training import load_dataset
 
 log = logging.getLogger(__name__)
+
+Errors = Callable[[Any], dict[str, Any]]
+"""The errors of a surrogate's long responses, by their names in its metrics."""
 
 
 def main(job: Job, fit: Path, weights: Path, best: Path, manifest: Path, output: Path) -> None:
@@ -25,19 +31,15 @@ def main(job: Job, fit: Path, weights: Path, best: Path, manifest: Path, output:
     `manifest` is that of the dataset on whose held-out samples every surrogate of the variant is scored.
     Where the run keeps its last weights, those that validated best are scored too, as `best_…`.
     """
-    study, variant = part_of(Study, job["part"]), job["variant"]
     metrics: dict[str, Any] = json.loads(fit.read_text(encoding="utf-8"))
-    structure = Structure.model_validate(job["structure"])
-    metrics |= {"structure": structure.name, "normalisation": study.reduction.normalisation}
+    metrics |= _setting(job)
     if metrics["status"] == "finished":
-        basis = reduce(structure, study.reduction)
         surrogate = load(weights)
+        errors = _beside_reference(job) if "structure" in job else _beside_recordings(job, manifest)
         metrics |= held_out_errors(surrogate, load_dataset(manifest))
-        references = long_responses(study, basis, variant)
-        metrics |= long_response_errors(study, basis, variant, surrogate, references)
+        metrics |= errors(surrogate)
         if metrics["keep"] == "last":
-            others = long_response_errors(study, basis, variant, load(best), references)
-            metrics |= {f"best_{name}": value for name, value in others.items()}
+            metrics |= {f"best_{name}": value for name, value in errors(load(best)).items()}
     write_json(output, metrics)
     log.info(
         "%s, validation nmse %s, long responses %s %%",
@@ -45,6 +47,29 @@ def main(job: Job, fit: Path, weights: Path, best: Path, manifest: Path, output:
         metrics["validation_nmse"],
         metrics.get("long_response_error_percent_worst"),
     )
+
+
+def _setting(job: Job) -> dict[str, Any]:
+    """What metrics say of the structure, if the study has one."""
+    if "structure" not in job:
+        return {"structure": None, "normalisation": None}
+    normalisation = part_of(Study, job["part"]).reduction.normalisation
+    return {"structure": job["structure"]["name"], "normalisation": normalisation}
+
+
+def _beside_reference(job: Job) -> Errors:
+    """Errors of long responses, from the reference model's."""
+    study, variant = part_of(Study, job["part"]), job["variant"]
+    basis = reduce(Structure.model_validate(job["structure"]), study.reduction)
+    references = long_responses(study, basis, variant)
+    return lambda surrogate: long_response_errors(study, basis, variant, surrogate, references)
+
+
+def _beside_recordings(job: Job, manifest: Path) -> Errors:
+    """Errors of rollouts, from held-out trajectories of the user's files."""
+    settings = part_of(FilesStudy, job["part"]).rollouts
+    held_out = HeldOutTrajectories.of(read_manifest(manifest), settings.trajectories)
+    return lambda surrogate: rollout_errors(surrogate, held_out, settings.integrator)
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from flexsurr.beam import EquilibriumNotFound, reduce
+from flexsurr.beam import EquilibriumNotFound, ModalBasis, reduce
 from flexsurr.cli.alone import alone_in
 from flexsurr.cli.command import Job, command
 from flexsurr.config.part import part_of
@@ -40,14 +40,13 @@ def main(job: Job, manifest: list[Path], store: Path, folder: Path) -> None:
 
 
 def _train(job: Job, manifest: list[Path], store: Path, folder: Path) -> None:
-    trial, study = trial_of(**job["trial"]), part_of(Study, job["part"])
-    basis = reduce(Structure.model_validate(job["structure"]), study.reduction)
+    trial, basis = trial_of(**job["trial"]), _basis(job)
     configurations = configurations_of(trial)
     dataset: SampleSource
-    if configurations is None:
+    if configurations is None or basis is None:
         dataset = ShardedDataset(read_manifest(manifest[0]))
     else:
-        ranges = study.dataset.initial_conditions
+        ranges = part_of(Study, job["part"]).dataset.initial_conditions
         dataset = configuration_samples(basis, job["variant"], ranges, configurations)
     described = {**job, "dataset_sha256": dataset.sha256}
     write_json(folder / "parameters.json", described)
@@ -87,6 +86,13 @@ def _train(job: Job, manifest: list[Path], store: Path, folder: Path) -> None:
     log.info(
         "%s after %d epochs, %.1f s%s", result.status, result.epochs, result.wall_s, _because(result.reason)
     )
+
+
+def _basis(job: Job) -> ModalBasis | None:
+    """The modes of the study's structure; None where its data are the user's own."""
+    if "structure" not in job:
+        return None
+    return reduce(Structure.model_validate(job["structure"]), part_of(Study, job["part"]).reduction)
 
 
 def _figures(job: Job, trial: Trial, result: Fit, dataset_sha256: str) -> dict[str, Any]:

@@ -6,6 +6,9 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from flexsurr.config.schema import Record
+from flexsurr.config.study import DEFAULT, Count, Integrator, Learning, Share, SplitBy
+
+FILES = "files"
 
 Word = Annotated[str, Field(min_length=1)]
 
@@ -101,20 +104,63 @@ class Columns(Record):
                 yield state.derivative
 
 
-class DerivativeFilter(Record):
-    """How derivatives that the files lack are estimated: Savitzky–Golay.
+class Filter(Record):
+    """The Savitzky–Golay filter: polynomials of `order` through the nearest `window` samples of a trajectory.
 
-    The derivative at a sample is that of the polynomial of `order` that fits the nearest `window` samples of
-    its trajectory best. With `smooth_states` the states become the values of these polynomials too.
+    Their slopes are the derivatives that the files lack. With `smooth_states` their values are the states.
     """
 
-    filter: Literal["savitzky_golay"] = "savitzky_golay"
-    window: Annotated[int, Field(ge=3)] = 9
+    kind: Literal["savitzky_golay"] = "savitzky_golay"
+    window: Annotated[int, Field(ge=3)] = 15
     order: Annotated[int, Field(ge=1)] = 3
-    smooth_states: bool = False
+    smooth_states: bool = True
 
     @model_validator(mode="after")
     def _the_window_determines_the_polynomial(self) -> Self:
         if self.window % 2 == 0 or self.window <= self.order:
             raise ValueError(f"window: {self.window} is not allowed; allowed: odd, more than order")
         return self
+
+
+class Rollouts(Record):
+    """Surrogates that start where a held-out trajectory starts, and follow it to its end.
+
+    They are judged by the first `trajectories` of them; figures show the first `drawn`, and each is timed
+    `repeats` times. `integrator` steps them.
+    """
+
+    trajectories: Count = 20
+    drawn: Count = 3
+    repeats: Count = 5
+    integrator: Integrator = Integrator(method="dop853", rtol=1e-8, atol=1e-10)
+
+
+class FilesStudy(Learning):
+    """A study of trajectories in `files`: names or patterns, below the folder that holds the Snakefile.
+
+    There is no structure and no reference model. Without a `filter` the data are taken as they are, except
+    that derivatives which the files lack are estimated by its defaults. Whole trajectories are held out of
+    training, or single samples of every trajectory (`split_by`).
+    """
+
+    source: Literal["files"]
+    files: Annotated[tuple[Word, ...], Field(min_length=1)]
+    columns: Columns
+    filter: Filter | None = None
+    split_by: SplitBy = "trajectory"
+    training_fraction: Share = 0.8
+    rollouts: Rollouts = Rollouts()
+
+    @property
+    def variants(self) -> tuple[str, ...]:
+        """What stands where other studies have the variants of their reference model: one, the files."""
+        return (FILES,)
+
+    def dataset_of(self, sweep: str) -> str:
+        """The name of the dataset that a sweep trains on: there is one."""
+        return DEFAULT
+
+    @property
+    def filter_in_use(self) -> Filter | None:
+        """The filter that the data go through, if any."""
+        return self.filter or (None if self.columns.have_derivatives else Filter())

@@ -2,9 +2,11 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
 from flexsurr.config.aircraft import Aircraft
 from flexsurr.config.feature_limits import FeatureLimits
+from flexsurr.config.files import FilesStudy
 from flexsurr.config.load import check_load
 from flexsurr.config.sample_study import SampleStudy
 from flexsurr.config.structure import Structure
@@ -35,7 +37,17 @@ class ResolvedSampleStudy:
     sweeps: Mapping[str, Sweep]
 
 
-AnyStudy = ResolvedStudy | ResolvedSampleStudy
+@dataclass(frozen=True)
+class ResolvedFiles:
+    """A study of the user's own files, which lie below `root`, with its sweeps."""
+
+    name: str
+    study: FilesStudy
+    sweeps: Mapping[str, Sweep]
+    root: Path
+
+
+AnyStudy = ResolvedStudy | ResolvedSampleStudy | ResolvedFiles
 
 
 def _trajectories(files: StudyFiles) -> ResolvedStudy:
@@ -70,7 +82,18 @@ def _samples(files: StudyFiles) -> ResolvedSampleStudy:
     return ResolvedSampleStudy(files.name, study, aircraft, limits, sweeps)
 
 
-SOURCES: dict[str, Callable[[StudyFiles], AnyStudy]] = {"trajectories": _trajectories, "samples": _samples}
+def _files(files: StudyFiles) -> ResolvedFiles:
+    study = files.record(FilesStudy)
+    sweeps = {name: files.named(FieldSweep, path, "sweeps", name) for name, path in study.sweeps.items()}
+    files.check()
+    return ResolvedFiles(files.name, study, sweeps, files.root)
+
+
+SOURCES: dict[str, Callable[[StudyFiles], AnyStudy]] = {
+    "trajectories": _trajectories,
+    "samples": _samples,
+    "files": _files,
+}
 """What a study's `source` may be; without one it is "trajectories"."""
 
 

@@ -1,6 +1,6 @@
 """A study: one structure, its reduced model, dataset, sweeps and evaluation (config/studies/*.yaml)."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, field_validator, model_validator
@@ -12,6 +12,8 @@ from flexsurr.config.structure import Positive
 
 Variant = Literal["hamiltonian", "as_printed"]
 Count = Annotated[int, Field(ge=1)]
+Share = Annotated[float, Field(gt=0.0, lt=1.0)]
+SplitBy = Literal["trajectory", "sample"]
 
 DEFAULT = "default"
 """What the sweep that figures show, and the dataset that surrogates are validated on, are called."""
@@ -110,8 +112,8 @@ class DatasetSettings(Record):
     trajectories_per_shard: Count = 10
     duration_s: Positive = 0.2
     step_s: Positive = 0.001
-    split_by: Literal["trajectory", "sample"] = "trajectory"
-    training_fraction: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.8
+    split_by: SplitBy = "trajectory"
+    training_fraction: Share = 0.8
     initial_conditions: InitialConditions = InitialConditions()
     integrator: Integrator = Integrator(method="dop853", rtol=1e-10, atol=1e-12)
 
@@ -213,22 +215,55 @@ class Statics(Record):
     )
 
 
-class Study(Record):
-    """One study. Paths are relative to the folder that holds the Snakefile.
+class Learning(Record):
+    """What every study has. Paths are relative to the folder that holds the Snakefile.
 
     `sweeps` names each sweep of the study; the best surrogates of each stand side by side in the tables.
-    The one called `default` is the one the figures show. Besides `dataset`, which every surrogate is
-    validated on, there may be `further_datasets`, and `trains_on` says which of them a sweep trains on. One
-    of these that another file names is left out where its value is null.
-    `frequencies_also_of` names structures whose
-    natural frequencies are tabulated beside those of the study's own.
+    The one called `default` is the one the figures show. One of these that another file names is left out
+    where its value is null. `seed` draws whatever is random, but for the trials' own.
+    """
+
+    sweeps: Annotated[dict[str, str], Field(min_length=1)]
+    seed: Annotated[int, Field(ge=0)] = 2024
+
+    @field_validator("sweeps", mode="before")
+    @classmethod
+    def _left_out_sweeps(cls, value: Any) -> Any:
+        return _left_out(value)
+
+    @model_validator(mode="after")
+    def _one_sweep_is_the_default(self) -> Self:
+        if DEFAULT not in self.sweeps:
+            raise ValueError(f"sweeps: one of them is called {DEFAULT}")
+        _check_names("sweeps", self.sweeps)
+        return self
+
+
+def _left_out(value: Any) -> Any:
+    """What another file names and this one sets to null is left out."""
+    if not isinstance(value, Mapping):
+        return value
+    return {name: each for name, each in value.items() if each is not None}
+
+
+def _check_names(key: str, names: Iterable[str]) -> None:
+    for name in names:
+        if not name.isidentifier():
+            raise ValueError(f"{key}: {name!r} is no plain name; allowed: letters, digits and underscores")
+
+
+class Study(Learning):
+    """A study of one structure: trajectories of its reduced model train its surrogates.
+
+    Besides `dataset`, which every surrogate is validated on, there may be `further_datasets`, and `trains_on`
+    says which of them a sweep trains on. One of these that another file names is left out where its value is
+    null. `frequencies_also_of` names structures whose natural frequencies are tabulated beside those of the
+    study's own.
     """
 
     source: Literal["trajectories"] = "trajectories"
     structure: str
     frequencies_also_of: tuple[str, ...] = ()
-    sweeps: Annotated[dict[str, str], Field(min_length=1)]
-    seed: Annotated[int, Field(ge=0)] = 2024
     variants: Annotated[tuple[Variant, ...], Field(min_length=1)] = ("hamiltonian", "as_printed")
     reduction: Reduction
     dataset: DatasetSettings = DatasetSettings()
@@ -237,24 +272,14 @@ class Study(Record):
     evaluation: EvaluationSettings = EvaluationSettings()
     statics: Statics = Statics()
 
-    @field_validator("sweeps", "further_datasets", "trains_on", mode="before")
+    @field_validator("further_datasets", "trains_on", mode="before")
     @classmethod
-    def _left_out(cls, value: Any) -> Any:
-        """What another file names and this one sets to null is left out."""
-        if not isinstance(value, Mapping):
-            return value
-        return {name: each for name, each in value.items() if each is not None}
+    def _left_out_datasets(cls, value: Any) -> Any:
+        return _left_out(value)
 
     @model_validator(mode="after")
     def _names_are_plain(self) -> Self:
-        if DEFAULT not in self.sweeps:
-            raise ValueError(f"sweeps: one of them is called {DEFAULT}")
-        for key in ("sweeps", "further_datasets"):
-            for name in getattr(self, key):
-                if not name.isidentifier():
-                    raise ValueError(
-                        f"{key}: {name!r} is no plain name; allowed: letters, digits and underscores"
-                    )
+        _check_names("further_datasets", self.further_datasets)
         if len(set(self.variants)) != len(self.variants):
             raise ValueError("variants: each at most once")
         return self

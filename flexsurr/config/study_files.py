@@ -23,7 +23,7 @@ class StudyFiles:
     """
 
     def __init__(self, root: Path, name: str, settings: Sequence[Source]) -> None:
-        self._root, self.name = root, name
+        self.root, self.name = root, name
         file = f"{STUDIES}/{name}.yaml"
         if not (root / file).is_file():
             where, allowed = holder(settings, ("studies",)), known_studies(root)
@@ -50,9 +50,9 @@ class StudyFiles:
         Problems are kept until `check`: the record is of no use before.
         """
         try:
-            if not (self._root / path).is_file():
+            if not (self.root / path).is_file():
                 self.refuse(f"{path!r} is no file; allowed: a YAML file", *key)
-            return build(record, [Source(path, read_yaml(self._root / path, path))])
+            return build(record, [Source(path, read_yaml(self.root / path, path))])
         except ConfigurationError as error:
             self.problems += error.problems
             return record.model_construct()
@@ -68,16 +68,16 @@ class StudyFiles:
 
     def _layers(self, file: str) -> list[Source]:
         """The file of a study, on top of the one of the study that it is `based_on`, if any."""
-        values = dict(read_yaml(self._root / file, file))
+        values = dict(read_yaml(self.root / file, file))
         base = values.pop("based_on", None)
         if base is None:
             return [Source(file, values)]
         below = f"{STUDIES}/{base}.yaml"
-        if not (self._root / below).is_file() or below == file:
+        if not (self.root / below).is_file() or below == file:
             raise ConfigurationError(
-                [f"{file}: based_on: {base!r} is no other study; allowed: {known_studies(self._root)}"]
+                [f"{file}: based_on: {base!r} is no other study; allowed: {known_studies(self.root)}"]
             )
-        under = read_yaml(self._root / below, below)
+        under = read_yaml(self.root / below, below)
         if "based_on" in under:
             raise ConfigurationError(
                 [f"{file}: based_on: {base!r} is based on another itself; allowed: a study that is not"]

@@ -44,13 +44,22 @@ def damped(structure: Structure) -> bool:
     return structure.dissipates
 
 
+SIMULATED = ("trajectories",)
+FILES = ("files",)
+EVERY = (*SIMULATED, *FILES)
+
+
 @dataclass(frozen=True)
 class Product:
-    """A figure or a table: its title, what its function reads, and of which structures it is made."""
+    """A figure or a table: its title, what its function reads, and of which studies it is made.
+
+    `sources`: where the data of these studies come from; `shows`: which structures they are of.
+    """
 
     title: str
     reads: tuple[str, ...] = ()
     shows: Callable[[Structure], bool] = any_structure
+    sources: tuple[str, ...] = SIMULATED
 
 
 FIGURES: dict[str, Product] = {
@@ -77,18 +86,22 @@ FIGURES: dict[str, Product] = {
     "energy_decay": Product("Total energy, free and forced", ("energy-*",), damped),
     "architecture_errors": Product("Errors by architecture", ("relatives",), damped),
     "cost_accuracy": Product("Cost against accuracy", ("cost-*-*",)),
-    "training_loss": Product("Training loss against wall time", ("history", "metrics")),
-    "training_epochs": Product("Training loss against epochs", ("history", "metrics")),
+    "rollouts": Product("Rollouts against held-out trajectories", ("rollout_curves",), sources=FILES),
+    "phase_plane": Product("Rollouts in the phase plane", ("rollout_curves",), sources=FILES),
+    "training_loss": Product("Training loss against wall time", ("history", "metrics"), sources=EVERY),
+    "training_epochs": Product("Training loss against epochs", ("history", "metrics"), sources=EVERY),
 }
 
 TABLES: dict[str, Product] = {
     "static_tip": Product("Tip under static loads", ("statics",)),
     "natural_frequencies": Product("Natural frequencies", ("frequencies",)),
-    "training": Product("Training runs", ("metrics",)),
-    "architectures": Product("Every architecture in every setting", ("metrics",)),
-    "seeds": Product("Mean and spread over seeds", ("metrics",)),
+    "training": Product("Training runs", ("metrics",), sources=EVERY),
+    "architectures": Product("Every architecture in every setting", ("metrics",), sources=EVERY),
+    "seeds": Product("Mean and spread over seeds", ("metrics",), sources=EVERY),
     "cost": Product("Cost and accuracy", ("cost-*-*",)),
     "learned_loads": Product("Learned loads", ("learned_loads-*",)),
+    "rollout_errors": Product("Errors of rollouts", ("rollouts",), sources=FILES),
+    "rollout_cost": Product("Cost of rollouts", ("rollout_cost",), sources=FILES),
 }
 
 # Of the airliner; its figures read the modes of its structure, its lattice, the times of its doublets, and

@@ -24,6 +24,7 @@ from flexsurr.report.every_model_figures import (
 )
 from flexsurr.report.kinematic_figures import figure_03, figure_04
 from flexsurr.report.response_figures import figure_10, figure_12, figure_14, figure_15
+from flexsurr.report.rollout_figures import phase_plane, rollouts
 from flexsurr.report.schematics import figure_05, figure_06, figure_07, figure_11
 from flexsurr.report.training_figures import training_epochs, training_loss
 
@@ -67,6 +68,8 @@ DRAW: dict[str, Callable[..., Figure]] = {
         energy_decay,
         architecture_errors,
         cost_accuracy,
+        rollouts,
+        phase_plane,
         training_loss,
         training_epochs,
     )

@@ -27,6 +27,7 @@ BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
 BLUE, VERMILION, PURPLE, GREY = "#0072B2", "#D55E00", "#CC79A7", "#7F7F7F"
 COLOURS: dict[str, str] = {
     "reference": BLACK,
+    "data": BLACK,
     "exact": "#A8A8A8",
     "rom": BLACK,
     "fom": ORANGE,
@@ -38,6 +39,7 @@ COLOURS: dict[str, str] = {
 }
 NAMES: dict[str, str] = {
     "reference": "reduced order",
+    "data": "data",
     "exact": "exact",
     "rom": "reduced order",
     "fom": "full order",
@@ -62,6 +64,7 @@ LOADED = "#F6E7C8"
 VARIANTS: dict[str, str] = {
     "hamiltonian": "gyroscopic term kept",
     "as_printed": "gyroscopic term dropped, as printed",
+    "files": "recorded data",
 }
 
 

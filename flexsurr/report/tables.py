@@ -56,6 +56,32 @@ LEARNED_LOAD_COLUMNS = (
     "force_relative_error",
 )
 
+ROLLOUT_COLUMNS = (
+    "study",
+    "model",
+    "trajectory",
+    "samples",
+    "duration_s",
+    "completed",
+    "error_percent",
+    "own_energy_drift_percent",
+)
+
+ROLLOUT_COST_COLUMNS = (
+    "study",
+    "model",
+    "implementation",
+    "integrator",
+    "simulations",
+    "duration_s",
+    "right_hand_sides",
+    "us_per_right_hand_side",
+    "wall_s_mean",
+    "wall_s_std",
+    "error_percent",
+    "diverged",
+)
+
 
 def static_tip(statics: pd.DataFrame) -> pd.DataFrame:
     """static_tip.csv: tip position [m] against dead tip load [N], ascending."""
@@ -86,9 +112,29 @@ def learned_loads(errors: pd.DataFrame) -> pd.DataFrame:
     return _columns(errors, LEARNED_LOAD_COLUMNS)
 
 
+def rollout_errors(errors: pd.DataFrame) -> pd.DataFrame:
+    """rollout_errors.csv: every selected surrogate on every held-out trajectory."""
+    return _columns(errors, ROLLOUT_COLUMNS)
+
+
+def rollout_cost(costs: pd.DataFrame) -> pd.DataFrame:
+    """rollout_cost.csv: every surrogate × implementation × integrator."""
+    return _columns(costs, ROLLOUT_COST_COLUMNS)
+
+
 TABULATE: dict[str, Callable[[pd.DataFrame], pd.DataFrame]] = {
     tabulate.__name__: tabulate
-    for tabulate in (static_tip, natural_frequencies, training, architectures, seeds, cost, learned_loads)
+    for tabulate in (
+        static_tip,
+        natural_frequencies,
+        training,
+        architectures,
+        seeds,
+        cost,
+        learned_loads,
+        rollout_errors,
+        rollout_cost,
+    )
 }
 """The functions that make the tables of the catalogue, by their names."""
 

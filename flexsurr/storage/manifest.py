@@ -8,7 +8,7 @@ import json
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,7 +40,9 @@ class Manifest:
     """A dataset. `folder` is where the manifest was read from or will be written to.
 
     `train` and `validation` are the numbers of the trajectories; where the split is by sample, every
-    trajectory is in both. `scales` are those of the training samples.
+    trajectory is in both. `scales` are those of the training samples. `origin` is where the trajectories
+    come from unless they were simulated: the SHA-256 of each of the user's files, whether their derivatives
+    were given or estimated, and the filter that they went through.
     """
 
     folder: Path
@@ -57,6 +59,7 @@ class Manifest:
     failures: tuple[str, ...]
     split_by: SplitBy = "trajectory"
     training_fraction: float = 0.8
+    origin: dict[str, Any] | None = None
     format_version: int = FORMAT_VERSION
 
     @property
@@ -122,6 +125,7 @@ def build_manifest(
     trajectories: int,
     split_by: SplitBy,
     training_fraction: float,
+    origin: dict[str, Any] | None = None,
 ) -> Manifest:
     """The manifest of the shards at `paths`, which all lie in one folder.
 
@@ -181,6 +185,7 @@ def build_manifest(
         failures=tuple(failures),
         split_by=split_by,
         training_fraction=training_fraction,
+        origin=origin,
     )
 
 

@@ -18,7 +18,7 @@ import pyarrow as pa
 import pyarrow.csv as csv
 from numpy.typing import NDArray
 
-from flexsurr.config.files import Columns, DerivativeFilter
+from flexsurr.config.files import Columns, Filter
 from flexsurr.storage.arrow import read_table
 from flexsurr.storage.derivatives import savitzky_golay
 from flexsurr.storage.errors import StorageError
@@ -62,15 +62,12 @@ def find_files(root: Path, patterns: Sequence[str]) -> list[str]:
     return list(found)
 
 
-def read_recordings(
-    root: Path, files: Sequence[str], columns: Columns, derivatives: DerivativeFilter
-) -> Recordings:
+def read_recordings(root: Path, files: Sequence[str], columns: Columns, least: int = 2) -> Recordings:
     """Every trajectory of `files`, paths below `root`, one file after another.
 
     Raises StorageError with a line for each file that cannot be read, lacks a column, or holds what is no
-    trajectory or one too short for the filter of its `derivatives`: naming the file, the column and the row.
+    trajectory of at least `least` samples: naming the file, the column and the row.
     """
-    least = 2 if columns.have_derivatives else derivatives.window
     problems: list[str] = []
     trajectories: list[Recording] = []
     sha256 = {}
@@ -88,12 +85,14 @@ def read_recordings(
     return Recordings(tuple(trajectories), sha256)
 
 
-def with_derivatives(recording: Recording, derivatives: DerivativeFilter) -> Recording:
-    """The trajectory with the derivatives that it has, or else those that the filter estimates."""
-    if recording.dx is not None:
-        return recording
-    smooth, slope = savitzky_golay(recording.t, recording.x, derivatives.window, derivatives.order)
-    return replace(recording, x=smooth if derivatives.smooth_states else recording.x, dx=slope)
+def filtered(recording: Recording, by: Filter) -> Recording:
+    """The trajectory with its own derivatives, or else the filter's; smoothed if that says so."""
+    smooth, slope = savitzky_golay(recording.t, recording.x, by.window, by.order)
+    return replace(
+        recording,
+        x=smooth if by.smooth_states else recording.x,
+        dx=slope if recording.dx is None else recording.dx,
+    )
 
 
 def _read(file: str, content: bytes, columns: Columns) -> dict[str, Column]:
@@ -156,7 +155,7 @@ def _trajectories(
     for name, rows in _groups(file, table, columns):
         which = "" if name is None else f" of trajectory {name}"
         if len(rows) < least:
-            why = "" if least == 2 else ", the window of the filter that estimates derivatives"
+            why = "" if least == 2 else ", the window of the filter"
             raise StorageError(f"{file}: {len(rows)} samples{which}; allowed: at least {least}{why}")
         back = np.flatnonzero(np.diff(t[rows]) <= 0.0)
         if back.size:

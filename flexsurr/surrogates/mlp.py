@@ -17,6 +17,7 @@ class MLP(Network):
     """ẋ = W₂ σ(W₁ x + b₁) + b₂, or the same with more hidden layers."""
 
     architecture: ClassVar[str] = "mlp"
+    paired: ClassVar[bool] = False
 
     @classmethod
     def readout_shapes(cls, states: int, neurons: int) -> list[tuple[int, ...]]:

@@ -15,7 +15,7 @@ class Surrogate(ABC):
     """An autonomous model of the states x = (q, p) in plain NumPy; `compiled` gives its fast form.
 
     `parameters` are its weights in one vector. A subclass is a field of the *scaled* states, from
-    (..., 2r) to (..., 2r); scaling and units are dealt with here.
+    (..., 2r) to (..., 2r); scaling and units are dealt with here. Unless it is `paired` it takes any states.
     """
 
     parameters: Array
@@ -24,12 +24,14 @@ class Surrogate(ABC):
     state_units: tuple[str, ...]
 
     architecture: ClassVar[str]
+    paired: ClassVar[bool] = True
     breakpoints: ClassVar[tuple[float, ...]] = ()
 
     def __post_init__(self) -> None:
-        if len(self.state_names) % 2 or len(self.state_names) != len(self.state_units):
+        if len(self.state_names) != len(self.state_units) or (self.paired and len(self.state_names) % 2):
+            pairs = "pairs (q, p)" if self.paired else "any number"
             raise ValueError(
-                f"states come in pairs (q, p) with a unit each, not {self.state_names} in {self.state_units}"
+                f"states come in {pairs} with a unit each, not {self.state_names} in {self.state_units}"
             )
         if self.parameters.shape != (self.parameter_count,):
             raise ValueError(

@@ -14,14 +14,16 @@ from functools import cached_property
 from typing import Any
 
 from flexsurr.config.errors import ConfigurationError
+from flexsurr.config.files import FILES
 from flexsurr.config.part import values_of
 from flexsurr.config.settings import Configuration
-from flexsurr.config.sources import ResolvedSampleStudy, ResolvedStudy
-from flexsurr.config.study import CONFIGURATIONS, DEFAULT, Study, Variant
+from flexsurr.config.sources import ResolvedFiles, ResolvedSampleStudy, ResolvedStudy
+from flexsurr.config.study import CONFIGURATIONS, DEFAULT, Study
 from flexsurr.config.trial import Trial, configurations_of
 from flexsurr.report.catalogue import FIGURES, TABLES, Product
 from flexsurr.training.sweep import expand, run_id
 from flexsurr.workflow.airliner_plan import AirlinerPlan
+from flexsurr.workflow.recorded import misfits, read_recorded
 
 Job = dict[str, Any]
 
@@ -75,6 +77,7 @@ LEARNED_LOAD = (
     "evaluation.load",
     "evaluation.learned_load",
 )
+ROLLOUTS = ("rollouts.trajectories", "rollouts.integrator")
 COST = (
     *EVALUATION,
     "evaluation.described_simulations",
@@ -88,7 +91,7 @@ class Run:
     """One training run: a trial of a sweep on a dataset of one variant, or in its place."""
 
     study: str
-    variant: Variant
+    variant: str
     dataset: str
     trial: Trial
 
@@ -108,8 +111,10 @@ class Plan:
 
     def __init__(self, configuration: Configuration) -> None:
         self.settings = configuration.settings
-        self.studies: Mapping[str, ResolvedStudy] = {
-            study.name: study for study in configuration.studies if isinstance(study, ResolvedStudy)
+        self.studies: Mapping[str, ResolvedStudy | ResolvedFiles] = {
+            study.name: study
+            for study in configuration.studies
+            if isinstance(study, ResolvedStudy | ResolvedFiles)
         }
         self.of_samples = {
             study.name: AirlinerPlan(study)
@@ -117,6 +122,11 @@ class Plan:
             if isinstance(study, ResolvedSampleStudy)
         }
         self._trials = {name: _trials(study) for name, study in self.studies.items()}
+        self._recorded = {
+            study.name: read_recorded(study)
+            for study in configuration.studies
+            if isinstance(study, ResolvedFiles)
+        }
 
     @cached_property
     def runs(self) -> dict[str, Run]:
@@ -146,13 +156,31 @@ class Plan:
         """The run_ids of one study."""
         return [key for key, run in self.runs.items() if run.study == study]
 
-    def variants(self, study: str) -> tuple[Variant, ...]:
+    def variants(self, study: str) -> tuple[str, ...]:
         """The variants of one study's reference model."""
         return self.studies[study].study.variants
 
     def shards(self, study: str, data: str) -> int:
         """Number of shards of the dataset in the folder `data` of one study."""
-        return self._settings(study, data).dataset.shards
+        return 1 if study in self._recorded else self._settings(study, data).dataset.shards
+
+    def sources(self, study: str) -> list[str]:
+        """The user's files of one study."""
+        return list(self._recorded[study].sha256)
+
+    def ingest(self, study: str) -> Job:
+        """The user's files of one study, as one shard."""
+        settings = self._files(study).study
+        used = settings.filter_in_use
+        job: Job = {
+            "study": study,
+            "variant": FILES,
+            "seed": settings.seed,
+            "files": dict(self._recorded[study].sha256),
+            "columns": settings.columns.model_dump(mode="json"),
+            "filter": used and used.model_dump(mode="json"),
+        }
+        return {**job, "configuration": _hash(job)}
 
     def simulate(self, study: str, data: str, shard: int | str) -> Job:
         """One shard, by its number: trajectories `first` to `first + count − 1`."""
@@ -175,6 +203,8 @@ class Plan:
 
     def manifest(self, study: str, data: str) -> Job:
         """The manifest of one dataset."""
+        if study in self._recorded:
+            return self._manifest_of_files(study)
         settings = self._settings(study, data)
         return {
             "study": study,
@@ -185,6 +215,21 @@ class Plan:
             "trajectories": settings.dataset.trajectories,
             "split_by": settings.dataset.split_by,
             "training_fraction": settings.dataset.training_fraction,
+        }
+
+    def _manifest_of_files(self, study: str) -> Job:
+        settings, ingest = self._files(study).study, self.ingest(study)
+        return {
+            **{key: ingest[key] for key in ("study", "variant", "seed", "configuration")},
+            "shards": 1,
+            "trajectories": self._recorded[study].trajectories,
+            "split_by": settings.split_by,
+            "training_fraction": settings.training_fraction,
+            "origin": {
+                "files": ingest["files"],
+                "derivatives": "given" if settings.columns.have_derivatives else "estimated",
+                "filter": ingest["filter"],
+            },
         }
 
     def store(self) -> Job:
@@ -211,12 +256,17 @@ class Plan:
         return [] if configurations_of(run.trial) else [f"datasets/{run.study}/{run.data}/manifest.json"]
 
     def _configurations(self, study: str, data: str) -> Job:
+        """What stands in the place of a dataset: a structure, and ranges of its configurations."""
+        if study in self._recorded:
+            return {}
         values = values_of(self._settings(study, data), SAMPLED)
         return {**self._part(study, ()), "part": values}
 
     def score(self, key: str) -> Job:
         """Held-out errors and long responses of one run."""
         run = self.runs[key]
+        if run.study in self._recorded:
+            return {"part": values_of(self._files(run.study).study, ROLLOUTS)}
         return {**self._part(run.study, SCORE), "variant": run.variant}
 
     def select(self, study: str) -> Job:
@@ -225,7 +275,7 @@ class Plan:
 
     def statics(self, study: str) -> Job:
         """Static deflection and natural frequencies."""
-        others = self.studies[study].frequencies_also_of
+        others = self._simulated(study).frequencies_also_of
         also = [structure.model_dump(mode="json") for structure in others]
         return {**self._part(study, STATICS), "frequencies_also_of": also}
 
@@ -241,13 +291,21 @@ class Plan:
         """Wall times and errors of everything, under one response."""
         return {**self._part(study, COST), "study": study, "variant": variant, "response": response}
 
+    def rollouts(self, study: str) -> Job:
+        """The selected surrogates against held-out trajectories."""
+        return {"study": study, "part": values_of(self._files(study).study, (*ROLLOUTS, "rollouts.drawn"))}
+
+    def rollout_cost(self, study: str) -> Job:
+        """Wall times of the same."""
+        return {"study": study, "part": values_of(self._files(study).study, (*ROLLOUTS, "rollouts.repeats"))}
+
     def learn_load(self, study: str, variant: str) -> Job:
         """The study's load, learned from configurations of one variant."""
         return {**self._part(study, LEARNED_LOAD), "study": study, "variant": variant}
 
     def load_data(self, study: str, variant: str) -> str:
         """The folder of the dataset that the load is learned from, below that of the study's datasets."""
-        return data_folder(variant, self.studies[study].study.evaluation.learned_load.dataset)
+        return data_folder(variant, self._simulated(study).study.evaluation.learned_load.dataset)
 
     def files(self, study: str, read: str) -> list[str]:
         """The files below the results that hold what a product of flexsurr.report `read`s."""
@@ -255,25 +313,48 @@ class Plan:
         if read == "structure":
             return []
         if read == "relatives":
-            structure = self.studies[study].structure
-            related = [name for name, other in self.studies.items() if other.structure == structure]
+            structure = self._simulated(study).structure
+            related = [
+                name
+                for name, other in self.studies.items()
+                if isinstance(other, ResolvedStudy) and other.structure == structure
+            ]
             return [file for name in related for file in self.files(name, "metrics")]
         if read in runs:
             return [f"runs/{key}/{runs[read]}" for key in self.runs_of(study)]
-        variants = self.variants(study)
-        names = ["statics", "frequencies", "validation"]
-        names += [f"response-{variant}-{response}" for variant in variants for response in DRAWN_RESPONSES]
-        names += [f"{kind}-{variant}" for kind in ("energy", "learned_loads") for variant in variants]
-        names += [f"cost-{variant}-{response}" for variant in variants for response in RESPONSE_KINDS]
-        found = [f"evaluation/{study}/{name}.parquet" for name in names if fnmatch(name, read)]
+        found = [
+            f"evaluation/{study}/{name}.parquet" for name in self._evaluated(study) if fnmatch(name, read)
+        ]
         if not found:
             raise ValueError(f"no rule makes {read}")
         return found
 
+    def _evaluated(self, study: str) -> list[str]:
+        """The names of the files that the evaluation of one study makes."""
+        if study in self._recorded:
+            return ["rollouts", "rollout_curves", "rollout_cost"]
+        variants = self.variants(study)
+        names = ["statics", "frequencies", "validation"]
+        names += [f"response-{variant}-{response}" for variant in variants for response in DRAWN_RESPONSES]
+        names += [f"{kind}-{variant}" for kind in ("energy", "learned_loads") for variant in variants]
+        return [*names, *(f"cost-{variant}-{kind}" for variant in variants for kind in RESPONSE_KINDS)]
+
     def figures(self, study: str) -> list[str]:
-        """The figures of one study: those that show a structure like its own."""
-        structure = self.studies[study].structure
-        return [name for name, figure in FIGURES.items() if figure.shows(structure)]
+        """The figures of one study: those of its source that show a structure like its own."""
+        return self._products(study, FIGURES)
+
+    def tables(self, study: str) -> list[str]:
+        """The tables of one study."""
+        return self._products(study, TABLES)
+
+    def _products(self, study: str, catalogue: Mapping[str, Product]) -> list[str]:
+        resolved = self.studies[study]
+        return [
+            name
+            for name, product in catalogue.items()
+            if resolved.study.source in product.sources
+            and (isinstance(resolved, ResolvedFiles) or product.shows(resolved.structure))
+        ]
 
     def read_by(self, study: str, product: Product) -> list[str]:
         """The files below the results that a figure or table of one study reads."""
@@ -290,11 +371,11 @@ class Plan:
     def _reads(self, study: str, product: Product) -> Job:
         reads: Job = {"reads": {read: self.files(study, read) for read in product.reads}}
         if "structure" in product.reads:
-            reads["structure"] = self.studies[study].structure.model_dump(mode="json")
+            reads["structure"] = self._simulated(study).structure.model_dump(mode="json")
         return reads
 
     def _part(self, study: str, keys: tuple[str, ...]) -> Job:
-        resolved = self.studies[study]
+        resolved = self._simulated(study)
         structure = resolved.structure.model_dump(mode="json")
         return {"structure": structure, "part": values_of(resolved.study, keys)}
 
@@ -304,9 +385,21 @@ class Plan:
 
     def _settings(self, study: str, data: str) -> Study:
         """The study as if the dataset in the folder `data` were its only one."""
-        settings = self.studies[study].study
+        settings = self._simulated(study).study
         dataset = settings.datasets[data.partition("-")[2] or DEFAULT]
         return settings.model_copy(update={"dataset": dataset, "seed": settings.seed_of(dataset)})
+
+    def _simulated(self, study: str) -> ResolvedStudy:
+        """A study of trajectories that are simulated."""
+        resolved = self.studies[study]
+        assert isinstance(resolved, ResolvedStudy)
+        return resolved
+
+    def _files(self, study: str) -> ResolvedFiles:
+        """A study of the user's files."""
+        resolved = self.studies[study]
+        assert isinstance(resolved, ResolvedFiles)
+        return resolved
 
 
 def _hash(job: Job) -> str:
@@ -317,7 +410,7 @@ def _variant(data: str) -> str:
     return data.partition("-")[0]
 
 
-def _trials(study: ResolvedStudy) -> dict[str, tuple[Trial, ...]]:
+def _trials(study: ResolvedStudy | ResolvedFiles) -> dict[str, tuple[Trial, ...]]:
     trials: dict[str, tuple[Trial, ...]] = {}
     problems = []
     for name, sweep in study.sweeps.items():
@@ -325,6 +418,9 @@ def _trials(study: ResolvedStudy) -> dict[str, tuple[Trial, ...]]:
             trials[name] = tuple(expand(sweep))
         except ValueError as error:
             problems.append(f"{study.study.sweeps[name]}: {' '.join(str(error).split())}")
+            continue
+        if isinstance(study, ResolvedFiles):
+            problems += misfits(study, study.study.sweeps[name], trials[name])
     if problems:
         raise ConfigurationError(problems)
     return trials

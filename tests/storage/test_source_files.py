@@ -7,15 +7,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.signal import savgol_filter
 
-from flexsurr.config.files import Columns, DerivativeFilter
+from flexsurr.config.files import Columns, Filter
 from flexsurr.storage import StorageError
 from flexsurr.storage.derivatives import savitzky_golay
-from flexsurr.storage.source_files import find_files, read_recordings, with_derivatives
+from flexsurr.storage.source_files import filtered, find_files, read_recordings
 
 Q, P = {"column": "theta", "unit": "rad"}, {"column": "L", "unit": "kg m^2/s"}
 COLUMNS = {"t": "time", "trajectory": "run", "pairs": [{"q": Q, "p": P}]}
 GIVEN = [{"q": Q | {"derivative": "rate"}, "p": P | {"derivative": "torque"}}]
-FILTER = DerivativeFilter(window=5, order=2)
+FILTER = Filter(window=5, order=2)
 
 
 def table(runs=(1, 2), samples=6) -> pd.DataFrame:
@@ -34,9 +34,8 @@ def write(path, frame):
         frame.to_parquet(path, index=False)
 
 
-def read(folder, *files, derivatives=FILTER, **changes):
-    columns = Columns.model_validate(COLUMNS | changes)
-    return read_recordings(folder, files, columns, derivatives)
+def read(folder, *files, least=FILTER.window, **changes):
+    return read_recordings(folder, files, Columns.model_validate(COLUMNS | changes), least)
 
 
 @pytest.mark.parametrize("kind", ["csv", "parquet", "npz"])
@@ -143,11 +142,11 @@ def test_polynomials_pass_the_filter_unchanged_however_samples_are_spaced(order,
 def test_derivatives_that_are_there_are_kept_and_others_estimated(tmp_path):
     write(tmp_path / "a.csv", table())
     given_ones = read(tmp_path, "a.csv", pairs=GIVEN).trajectories[0]
-    assert with_derivatives(given_ones, FILTER) is given_ones
     missing = read(tmp_path, "a.csv").trajectories[0]
     smooth, slope = savitzky_golay(missing.t, missing.x, 5, 2)
-    estimated = with_derivatives(missing, FILTER)
-    np.testing.assert_array_equal(estimated.x, missing.x)
-    np.testing.assert_array_equal(estimated.dx, slope)
-    smoothed = with_derivatives(missing, FILTER.model_copy(update={"smooth_states": True}))
-    np.testing.assert_array_equal(smoothed.x, smooth)
+    as_it_is = FILTER.model_copy(update={"smooth_states": False})
+    np.testing.assert_array_equal(filtered(given_ones, FILTER).dx, given_ones.dx)
+    np.testing.assert_array_equal(filtered(missing, FILTER).dx, slope)
+    for recording in (given_ones, missing):
+        np.testing.assert_array_equal(filtered(recording, FILTER).x, smooth)
+        np.testing.assert_array_equal(filtered(recording, as_it_is).x, recording.x)

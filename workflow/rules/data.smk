@@ -3,12 +3,34 @@
 
 wildcard_constraints:
     study="|".join(STUDIES),
-    variant="hamiltonian|as_printed",
-    data=r"(hamiltonian|as_printed)(-\w+)?",
+    variant="hamiltonian|as_printed|files",
+    data=r"((hamiltonian|as_printed)(-\w+)?)|files",
     response="free|forced",
     shard=r"\d+",
     figure="[a-z0-9_]+",
     table="[a-z0-9_]+",
+
+
+rule ingest:
+    input:
+        lambda w: plan.sources(w.study),
+    output:
+        f"{RESULTS}/datasets/{{study}}/files/shard-0000.parquet",
+    log:
+        f"{RESULTS}/logs/ingest/{{study}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/ingest/{{study}}.tsv"
+    threads: 1
+    resources:
+        mem_mb=4000,
+        runtime=60,
+    params:
+        job=job("ingest", "study"),
+        code=code("ingest"),
+    message:
+        "reading the files of {wildcards.study}"
+    shell:
+        "python -m flexsurr ingest --job {params.job:q} --output {output:q} > {log:q} 2>&1"
 
 
 rule simulate:
@@ -18,6 +40,8 @@ rule simulate:
         f"{RESULTS}/logs/simulate/{{study}}-{{data}}-{{shard}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/simulate/{{study}}-{{data}}-{{shard}}.tsv"
+    wildcard_constraints:
+        data=r"(hamiltonian|as_printed)(-\w+)?",
     threads: 1
     resources:
         mem_mb=1000,

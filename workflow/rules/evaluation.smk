@@ -85,3 +85,56 @@ rule evaluate:
     shell:
         "python -m flexsurr evaluate --job {params.job:q} --selection {input.selection:q}"
         " --runs {params.runs:q} --loads {input.loads:q} --output {output:q} > {log:q} 2>&1"
+
+
+rule rollouts:
+    input:
+        selection=f"{RESULTS}/selected/{{study}}.json",
+        manifest=f"{RESULTS}/datasets/{{study}}/files/manifest.json",
+    output:
+        table=f"{RESULTS}/evaluation/{{study}}/rollouts.parquet",
+        curves=f"{RESULTS}/evaluation/{{study}}/rollout_curves.parquet",
+    log:
+        f"{RESULTS}/logs/rollouts/{{study}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/rollouts/{{study}}.tsv"
+    threads: 1
+    resources:
+        mem_mb=2000,
+        runtime=60,
+    params:
+        job=job("rollouts", "study"),
+        code=code("rollouts"),
+        runs=f"{RESULTS}/runs",
+    message:
+        "surrogates of {wildcards.study} beside held-out trajectories"
+    shell:
+        "python -m flexsurr rollouts --job {params.job:q} --selection {input.selection:q}"
+        " --runs {params.runs:q} --manifest {input.manifest:q} --table {output.table:q}"
+        " --curves {output.curves:q} > {log:q} 2>&1"
+
+
+rule rollout_cost:
+    # It measures time, so it asks for every core: nothing else runs beside it.
+    input:
+        selection=f"{RESULTS}/selected/{{study}}.json",
+        manifest=f"{RESULTS}/datasets/{{study}}/files/manifest.json",
+    output:
+        f"{RESULTS}/evaluation/{{study}}/rollout_cost.parquet",
+    log:
+        f"{RESULTS}/logs/rollout_cost/{{study}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/rollout_cost/{{study}}.tsv"
+    threads: plan.settings.timing.cores or workflow.cores or 1
+    resources:
+        mem_mb=2000,
+        runtime=240,
+    params:
+        job=job("rollout_cost", "study"),
+        code=code("rollout_cost"),
+        runs=f"{RESULTS}/runs",
+    message:
+        "timing rollouts of {wildcards.study}"
+    shell:
+        "python -m flexsurr rollout-cost --job {params.job:q} --selection {input.selection:q}"
+        " --runs {params.runs:q} --manifest {input.manifest:q} --output {output:q} > {log:q} 2>&1"

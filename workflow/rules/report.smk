@@ -82,10 +82,19 @@ rule tabulate:
 
 rule join:
     input:
-        expand(f"{RESULTS}/tables/{{study}}/{{name}}.csv", study=STUDIES, name=TABLES),
+        [
+            f"{RESULTS}/tables/{study}/{name}.csv"
+            for study in STUDIES
+            for name in plan.tables(study)
+        ],
         f"{RESULTS}/tables/airliner/cost.csv" if AIRLINER else [],
     output:
-        expand(f"{RESULTS}/tables/{{name}}.csv", name=TABLES),
+        expand(
+            f"{RESULTS}/tables/{{name}}.csv",
+            name=dict.fromkeys(
+                name for study in STUDIES for name in plan.tables(study)
+            ),
+        ),
     log:
         f"{RESULTS}/logs/join.log",
     benchmark:
