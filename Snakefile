@@ -36,10 +36,9 @@ include: "workflow/rules/evaluation.smk"
 include: "workflow/rules/report.smk"
 
 
-if AIRLINER:
+if plan.of_samples:
 
-    include: "workflow/rules/airliner_data.smk"
-    include: "workflow/rules/airliner_flight.smk"
+    include: "workflow/rules/flight.smk"
 
 
 rule all:
@@ -51,4 +50,3 @@ rule all:
             for name in plan.figures(study)
         ],
         rules.join.output,
-        rules.airliner.input if AIRLINER else [],

@@ -12,7 +12,7 @@ from flexsurr.cli.frames import write_frame
 from flexsurr.config.flight import CONTROL_NAMES, FlightCondition
 from flexsurr.evaluation.airliner_flights import Flight, flown, outputs
 from flexsurr.evaluation.airliner_models import REFERENCE
-from flexsurr.evaluation.airliner_modes import MODE_COLUMNS, airliner_modes, left_out_modes
+from flexsurr.evaluation.airliner_modes import airliner_modes, left_out_modes
 from flexsurr.evaluation.airliner_modes import elastic_modes as what_modes_are
 from flexsurr.flight.trim import TrimNotFound, trim, trim_envelope
 
@@ -24,7 +24,6 @@ def main(
     selection: Path,
     runs: Path,
     modes: Path,
-    table: Path,
     left_out: Path,
     elastic_modes: Path,
     doublets: Path,
@@ -41,9 +40,7 @@ def main(
             cruise[name] = trim(plane.flying(mapping), settings.condition, settings.limits)
         except TrimNotFound as error:
             raise TrimNotFound(f"{name}: {error}") from None
-    frame = airliner_modes(cruise[REFERENCE], cruise["network"])
-    write_frame(modes, frame)
-    write_frame(table, frame[list(MODE_COLUMNS)])
+    write_frame(modes, airliner_modes(cruise[REFERENCE], cruise["network"]))
     write_frame(left_out, left_out_modes(plane))
     write_frame(elastic_modes, what_modes_are(plane))
     histories = []
@@ -84,8 +81,7 @@ if __name__ == "__main__":
             "selection": "the chosen network",
             "runs": "the folder of all runs",
             "modes": "eigenvalues with their errors",
-            "table": "airliner_modes.csv",
-            "elastic_modes": "airliner_elastic_modes.csv",
+            "elastic_modes": "what each elastic mode is",
             "left_out": "what the modes change that the aerodynamics does not know",
             "doublets": "time histories",
             "trims": "over the envelope",

@@ -78,9 +78,9 @@ if __name__ == "__main__":
             "runs": "the folder of all runs",
             "flights": "one row a flight and model",
             "exceedances": "one row a flight and input",
-            "cost": "airliner_cost.csv",
+            "cost": "one row a model",
             "rows": "the same in the columns of cost.csv",
-            "limits": "airliner_limits.csv",
+            "limits": "one row an input",
         },
         expected=(TrimNotFound,),
     )

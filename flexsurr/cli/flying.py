@@ -3,6 +3,7 @@
 import json
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from flexsurr.cli.command import Job
 from flexsurr.config.aircraft import Aircraft
@@ -13,6 +14,7 @@ from flexsurr.evaluation.airliner_models import Airliner, airliner, lattices
 from flexsurr.simulation.mapping import CompiledMapping
 from flexsurr.storage import StorageError
 from flexsurr.surrogates.coefficient_network import CoefficientNetwork, load_coefficient_network
+from flexsurr.surrogates.coefficient_polynomial import CoefficientPolynomial, load_coefficient_polynomial
 
 
 def airliner_of(job: Job) -> Airliner:
@@ -33,6 +35,12 @@ def forms_of(
         **lattices(plane, job["boundary_condition"], with_rebuild=with_rebuild),
         **{label: network.compiled() for label, network in networks.items()},
     }
+
+
+def load_map(runs: Path, chosen: Mapping[str, Any]) -> CoefficientNetwork | CoefficientPolynomial:
+    """The map of a selected run, whose metrics are `chosen`."""
+    load = load_coefficient_network if chosen["architecture"] == "network" else load_coefficient_polynomial
+    return load(runs / chosen["run_id"] / "weights.npz")
 
 
 def selected_networks(selection: Path, runs: Path) -> dict[str, CoefficientNetwork]:

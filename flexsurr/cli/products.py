@@ -1,7 +1,7 @@
 """What a figure or a table reads: the files of its study, as its function's arguments, and its caption."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,9 +12,13 @@ from flexsurr.cli.frames import read_frame
 from flexsurr.config.structure import Structure
 
 
-def arguments(job: Job, results: Path) -> list[Any]:
-    """What the job `reads`, in its order: its structure, or what its files below `results` hold."""
-    return [_read(read, job, [results / file for file in files]) for read, files in job["reads"].items()]
+def arguments(job: Job, results: Path, known: Mapping[str, Any] | None = None) -> list[Any]:
+    """What the job `reads`, in its order: its structure, what is `known`, or what its files hold."""
+    known = known or {}
+    return [
+        known[read] if read in known else _read(read, job, [results / file for file in files])
+        for read, files in job["reads"].items()
+    ]
 
 
 def text_of(caption: Path) -> str:

@@ -25,18 +25,22 @@ Errors = Callable[[Any], dict[str, Any]]
 """The errors of a surrogate's long responses, by their names in its metrics."""
 
 
-def main(job: Job, fit: Path, weights: Path, best: Path, manifest: Path, output: Path) -> None:
+def main(job: Job, fit: Path, weights: Path, best: Path, manifest: list[Path], output: Path) -> None:
     """Write the run's metrics: what training says of it and, unless that failed, its scores.
 
     `manifest` is that of the dataset on whose held-out samples every surrogate of the variant is scored.
-    Where the run keeps its last weights, those that validated best are scored too, as `best_…`.
+    Where the run keeps its last weights, those that validated best are scored too, as `best_…`. A map has no
+    `manifest`: what training says of it is all.
     """
+    if not manifest:
+        write_json(output, json.loads(fit.read_text(encoding="utf-8")))
+        return
     metrics: dict[str, Any] = json.loads(fit.read_text(encoding="utf-8"))
     metrics |= _setting(job)
     if metrics["status"] == "finished":
         surrogate = load(weights)
-        errors = _beside_reference(job) if "structure" in job else _beside_recordings(job, manifest)
-        metrics |= held_out_errors(surrogate, load_dataset(manifest))
+        errors = _beside_reference(job) if "structure" in job else _beside_recordings(job, manifest[0])
+        metrics |= held_out_errors(surrogate, load_dataset(manifest[0]))
         metrics |= errors(surrogate)
         if metrics["keep"] == "last":
             metrics |= {f"best_{name}": value for name, value in errors(load(best)).items()}
@@ -79,7 +83,7 @@ if __name__ == "__main__":
             "fit": "what training says of the run",
             "weights": "the surrogate that it keeps",
             "best": "the one that validated best",
-            "manifest": "the dataset to score it on",
+            "manifest": "the dataset to score it on; none for a map …",
             "output": "its metrics",
         },
         expected=(EquilibriumNotFound, ArithmeticError),

@@ -5,8 +5,9 @@ from pathlib import Path
 from typing import Any
 
 from flexsurr.cli.command import Job, command
-from flexsurr.storage import write_json
+from flexsurr.storage import StorageError, write_json
 from flexsurr.training import select
+from flexsurr.training.selection import select_maps
 from flexsurr.training.tracking import end_sweep, read_store
 
 DEFAULT_SWEEP = "default"
@@ -16,17 +17,25 @@ def main(job: Job, runs: Path, store: Path, output: Path) -> None:
     """Write the selection from the metrics of the runs below `runs` to `output`, and end the sweeps.
 
     The best surrogate of the sweep `default` goes by the name of its architecture (`hnn`), that of
-    another sweep has the sweep's name added (`hnn_paper`).
+    another sweep has the sweep's name added (`hnn_paper`). Of a study of maps there is the best for each of
+    the trials' labels, and StorageError where no network has finished, for none could be flown with.
     """
     selection: dict[str, dict[str, Any]] = {}
     metrics: dict[str, dict[str, Any]] = {}
     for sweep, keys in job["sweeps"].items():
         for key in keys:
             metrics[key] = json.loads((runs / key / "metrics.json").read_text(encoding="utf-8"))
-        for variant, chosen in select([metrics[key] for key in keys]).items():
+        records = [metrics[key] for key in keys]
+        if job.get("maps"):
+            best = select_maps(records)
+            selection |= {name if sweep == DEFAULT_SWEEP else f"{name}_{sweep}": best[name] for name in best}
+            continue
+        for variant, chosen in select(records).items():
             for name, entry in chosen.items():
                 known_as = name if sweep == DEFAULT_SWEEP else f"{name}_{sweep}"
                 selection.setdefault(variant, {})[known_as] = entry
+    if job.get("maps") and "network" not in selection:
+        raise StorageError(f"{runs}: no network of {job['study']} has finished; see their metrics.json")
     write_json(output, selection)
     end_sweep(read_store(store), job["study"], metrics)
 

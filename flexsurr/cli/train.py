@@ -1,8 +1,10 @@
-"""Train one surrogate: a trial of a sweep on the data of one variant."""
+"""Train one surrogate, of a field or of a map: a trial of a sweep on one dataset."""
 
 import logging
 import math
 import time
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -14,11 +16,17 @@ from flexsurr.cli.command import Job, command
 from flexsurr.config.part import part_of
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Study
-from flexsurr.config.trial import Trial, configurations_of, settings_of, trial_of
-from flexsurr.storage import read_manifest, replacing, write_json
+from flexsurr.config.trial import Map, MapNetwork, Trial, configurations_of, settings_of, trial_of
+from flexsurr.storage import read_all_samples, read_manifest, replacing, write_json
+from flexsurr.surrogates import Surrogate
+from flexsurr.surrogates.coefficient_network import save_coefficient_network
+from flexsurr.surrogates.coefficient_polynomial import save_coefficient_polynomial
 from flexsurr.training import Fit, ShardedDataset, fit
+from flexsurr.training.coefficient_data import coefficient_data
+from flexsurr.training.coefficient_fit import fit_coefficients
 from flexsurr.training.configuration_samples import configuration_samples
 from flexsurr.training.dataset import SampleSource
+from flexsurr.training.epochs import Report
 from flexsurr.training.saved_surrogate import SavedSurrogate, save_surrogate
 from flexsurr.training.sweep import run_id
 from flexsurr.training.tracking import read_store, tracked
@@ -28,30 +36,61 @@ log = logging.getLogger(__name__)
 PROGRESS_EVERY_S = 5.0
 
 
-def main(job: Job, manifest: list[Path], store: Path, folder: Path) -> None:
+def main(job: Job, data: list[Path], store: Path, folder: Path) -> None:
     """Write parameters.json, fit.json, history.parquet, weights.npz and best.npz of the run into `folder`.
 
     weights.npz holds what the trial keeps, best.npz what validated best. A trial that diverges ends well,
-    with status "failed", its reason, and the best weights it met. One that samples configurations has no
-    `manifest`.
+    with status "failed", its reason, and the best weights it met. `data` is the manifest of the
+    dataset, for a map the shards of its samples; a trial that samples configurations has none.
     """
     with alone_in(folder):
-        _train(job, manifest, store, folder)
+        _train(job, data, store, folder)
 
 
-def _train(job: Job, manifest: list[Path], store: Path, folder: Path) -> None:
-    trial, basis = trial_of(**job["trial"]), _basis(job)
-    configurations = configurations_of(trial)
+@dataclass(frozen=True)
+class _Task:
+    """What one trial is trained on (its hash), how, and how the result is saved."""
+
+    sha256: str
+    fit: Callable[[Report], Fit]
+    save: Callable[[Any, Path], None]
+
+
+def _of_field(job: Job, trial: Trial, data: list[Path], folder: Path) -> _Task:
+    basis, configurations = _basis(job), configurations_of(trial)
     dataset: SampleSource
     if configurations is None or basis is None:
-        dataset = ShardedDataset(read_manifest(manifest[0]))
+        dataset = ShardedDataset(read_manifest(data[0]))
     else:
         ranges = part_of(Study, job["part"]).dataset.initial_conditions
         dataset = configuration_samples(basis, job["variant"], ranges, configurations)
-    described = {**job, "dataset_sha256": dataset.sha256}
+    low, high = (
+        np.array(values)[: len(dataset.state_names)] for values in (dataset.scales.low, dataset.scales.high)
+    )
+
+    def save(surrogate: Surrogate, path: Path) -> None:
+        saved = SavedSurrogate(surrogate, job["study"], job["variant"], job["run_id"], low, high, basis)
+        save_surrogate(saved, path)
+
+    return _Task(dataset.sha256, lambda report: fit(trial, dataset, folder, report), save)
+
+
+def _of_map(job: Job, trial: Map, data: list[Path], folder: Path) -> _Task:
+    samples = read_all_samples(data, job["configuration"], job["samples"])
+    dataset = coefficient_data(samples, job["held_out"], job["seed"])
+    save = save_coefficient_network if isinstance(trial, MapNetwork) else save_coefficient_polynomial
+    return _Task(dataset.sha256, lambda report: fit_coefficients(trial, dataset, folder, report), save)
+
+
+def _train(job: Job, data: list[Path], store: Path, folder: Path) -> None:
+    trial = trial_of(**job["trial"])
+    task = (
+        _of_map(job, trial, data, folder) if isinstance(trial, Map) else _of_field(job, trial, data, folder)
+    )
+    described = {**job, "dataset_sha256": task.sha256}
     write_json(folder / "parameters.json", described)
     page_store = read_store(store)
-    shown = {"variant": job["variant"], **job["trial"], "dataset_sha256": dataset.sha256}
+    shown = {"variant": job["variant"], **job["trial"], "dataset_sha256": task.sha256}
     with tracked(page_store, job["study"], job["run_id"], shown) as page:
         next_s = time.monotonic()
 
@@ -68,21 +107,16 @@ def _train(job: Job, manifest: list[Path], store: Path, folder: Path) -> None:
                 )
                 next_s = time.monotonic() + PROGRESS_EVERY_S
 
-        result = fit(trial, dataset, folder, report=report)
-        figures = _figures(job, trial, result, dataset.sha256)
+        result = task.fit(report)
+        figures = _figures(job, trial, result, task.sha256)
         page.status, page.reason = result.status, result.reason
-        low, high = (
-            np.array(values)[: len(dataset.state_names)]
-            for values in (dataset.scales.low, dataset.scales.high)
-        )
-        for name, surrogate in (("weights", result.surrogate), ("best", result.best)):
-            saved = SavedSurrogate(surrogate, job["study"], job["variant"], job["run_id"], low, high, basis)
-            save_surrogate(saved, folder / f"{name}.npz")
+        task.save(result.surrogate, folder / "weights.npz")
+        task.save(result.best, folder / "best.npz")
         with replacing(folder / "history.parquet") as beside:
             result.history.to_parquet(beside, index=False)
         write_json(folder / "fit.json", figures)
         files = [folder / name for name in ("parameters.json", "weights.npz", "history.parquet")]
-        page.keep(figures, {"dataset_sha256": dataset.sha256}, files)
+        page.keep(figures, {"dataset_sha256": task.sha256}, files)
     log.info(
         "%s after %d epochs, %.1f s%s", result.status, result.epochs, result.wall_s, _because(result.reason)
     )
@@ -119,7 +153,15 @@ def _figures(job: Job, trial: Trial, result: Fit, dataset_sha256: str) -> dict[s
         "validation_nmse": _finite(result.validation_nmse),
         "best_validation_nmse": _finite(result.best_validation_nmse),
         "dataset_sha256": dataset_sha256,
-    }
+    } | _of_its_kind(trial, result)
+
+
+def _of_its_kind(trial: Trial, result: Fit) -> dict[str, Any]:
+    """What else is said of a map: what tables call it, and R² of its worst output on held-out samples."""
+    if not isinstance(trial, Map):
+        return {}
+    worst = 1.0 - max(result.validation_nmse_per_state)
+    return {"label": trial.label, "validation_r2_worst": _finite(worst)}
 
 
 def _finite(value: float) -> float | None:
@@ -134,7 +176,7 @@ if __name__ == "__main__":
     command(
         main,
         {
-            "manifest": "of the dataset; none for sampled configurations …",
+            "data": "the manifest of the dataset, or all shards of samples; none for configurations …",
             "store": "the address of the tracking store",
             "folder": "of the run",
         },

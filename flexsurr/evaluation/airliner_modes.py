@@ -14,8 +14,6 @@ from flexsurr.flight.mode_names import mode_names, motions
 from flexsurr.flight.model import FlightModel
 from flexsurr.flight.trim import Trim, trim
 
-MODE_COLUMNS = ("mode", "reference_real", "reference_imag", "surrogate_real", "surrogate_imag")
-
 # The paper's numbers of the six modes that the aerodynamics knows (text to its Fig. 21): three symmetric
 # about the plane y = 0, three "asymmetric".
 PAPER_SYMMETRIC, PAPER_ANTISYMMETRIC = (1, 6, 7), (2, 5, 8)

@@ -29,3 +29,7 @@ COST_COLUMNS = (
     "energy_drift_percent",
     "diverged",
 )
+
+MODE_COLUMNS = ("mode", "reference_real", "reference_imag", "surrogate_real", "surrogate_imag")
+
+ACCURACY_COLUMNS = ("output", "train_nmse", "validation_nmse", "validation_r2", "model")

@@ -8,6 +8,7 @@ A product says what it `reads`, in the order of its function's arguments:
 | metrics | one row for each run of the study: its metrics.json |
 | relatives | the same of every study of the same structure |
 | history | all runs' history.parquet, with a column run_id |
+| free_modes, lattice, doublet | of the study's aircraft: modes, vortex lattice, times of a doublet |
 | anything else | results/evaluation/<study>/<it>.parquet; a * stands for every file that fits, concatenated |
 
 A figure may show what only some structures have: `Product.shows` says of which it is made.
@@ -46,7 +47,11 @@ def damped(structure: Structure) -> bool:
 
 SIMULATED = ("trajectories",)
 FILES = ("files",)
-EVERY = (*SIMULATED, *FILES)
+SAMPLES = ("samples",)
+OF_FIELDS = (*SIMULATED, *FILES)
+
+OF_AIRCRAFT = frozenset({"free_modes", "lattice", "doublet"})
+"""What is read of the aircraft of a study of samples."""
 
 
 @dataclass(frozen=True)
@@ -88,42 +93,42 @@ FIGURES: dict[str, Product] = {
     "cost_accuracy": Product("Cost against accuracy", ("cost-*-*",)),
     "rollouts": Product("Rollouts against held-out trajectories", ("rollout_curves",), sources=FILES),
     "phase_plane": Product("Rollouts in the phase plane", ("rollout_curves",), sources=FILES),
-    "training_loss": Product("Training loss against wall time", ("history", "metrics"), sources=EVERY),
-    "training_epochs": Product("Training loss against epochs", ("history", "metrics"), sources=EVERY),
+    "training_loss": Product("Training loss against wall time", ("history", "metrics"), sources=OF_FIELDS),
+    "training_epochs": Product("Training loss against epochs", ("history", "metrics"), sources=OF_FIELDS),
+    "figure_16": Product("The airliner and its panels", ("free_modes", "lattice"), sources=SAMPLES),
+    "figure_17": Product("Distribution of mass", ("free_modes",), sources=SAMPLES),
+    "figure_18": Product("Eigenvalues in trim", ("modes",), sources=SAMPLES),
+    "figure_19": Product("Elevator doublet: longitudinal states", ("doublets", "doublet"), sources=SAMPLES),
+    "figure_20": Product(
+        "Elevator doublet: lateral-directional states", ("doublets", "doublet"), sources=SAMPLES
+    ),
+    "figure_21": Product(
+        "Elevator doublet: modal displacements", ("doublets", "doublet", "elastic_modes"), sources=SAMPLES
+    ),
+    "aileron_doublet": Product("Aileron doublet", ("doublets", "doublet", "elastic_modes"), sources=SAMPLES),
+    "rudder_doublet": Product("Rudder doublet", ("doublets", "doublet", "elastic_modes"), sources=SAMPLES),
+    "elastic_modes": Product("Elastic modes", ("free_modes", "elastic_modes"), sources=SAMPLES),
+    "coefficient_errors": Product("Error against each input", ("errors",), sources=SAMPLES),
 }
 
 TABLES: dict[str, Product] = {
     "static_tip": Product("Tip under static loads", ("statics",)),
     "natural_frequencies": Product("Natural frequencies", ("frequencies",)),
-    "training": Product("Training runs", ("metrics",), sources=EVERY),
-    "architectures": Product("Every architecture in every setting", ("metrics",), sources=EVERY),
-    "seeds": Product("Mean and spread over seeds", ("metrics",), sources=EVERY),
-    "cost": Product("Cost and accuracy", ("cost-*-*",)),
+    "training": Product("Training runs", ("metrics",), sources=(*OF_FIELDS, *SAMPLES)),
+    "architectures": Product("Every architecture in every setting", ("metrics",), sources=OF_FIELDS),
+    "seeds": Product("Mean and spread over seeds", ("metrics",), sources=OF_FIELDS),
+    "cost": Product("Cost and accuracy", ("cost-*",), sources=(*SIMULATED, *SAMPLES)),
     "learned_loads": Product("Learned loads", ("learned_loads-*",)),
     "rollout_errors": Product("Errors of rollouts", ("rollouts",), sources=FILES),
     "rollout_cost": Product("Cost of rollouts", ("rollout_cost",), sources=FILES),
-}
-
-# Of the airliner; its figures read the modes of its structure, its lattice, the times of its doublets, and
-# results by the names of their files.
-AIRLINER_FIGURES: dict[str, Product] = {
-    "figure_16": Product("The airliner and its panels", ("structure", "lattice")),
-    "figure_17": Product("Distribution of mass", ("structure",)),
-    "figure_18": Product("Eigenvalues in trim", ("modes",)),
-    "figure_19": Product("Elevator doublet: longitudinal states", ("doublets", "times")),
-    "figure_20": Product("Elevator doublet: lateral-directional states", ("doublets", "times")),
-    "figure_21": Product("Elevator doublet: modal displacements", ("doublets", "times", "elastic_modes")),
-    "aileron_doublet": Product("Aileron doublet", ("doublets", "times", "elastic_modes")),
-    "rudder_doublet": Product("Rudder doublet", ("doublets", "times", "elastic_modes")),
-    "elastic_modes": Product("Elastic modes", ("structure", "elastic_modes")),
-    "coefficient_errors": Product("Error against each input", ("errors",)),
-}
-
-AIRLINER_TABLES: dict[str, Product] = {
-    "airliner_accuracy": Product("Accuracy of the coefficients"),
-    "airliner_elastic_modes": Product("Elastic modes and their numbers in the paper"),
-    "airliner_modes": Product("Eigenvalues in trim"),
-    "airliner_left_out_modes": Product("What the modes left out of the aerodynamics change"),
-    "airliner_cost": Product("Cost of ninety flights"),
-    "airliner_limits": Product("States beyond the network's limits"),
+    "airliner_accuracy": Product("Accuracy of the coefficients", ("accuracy",), sources=SAMPLES),
+    "airliner_elastic_modes": Product(
+        "Elastic modes and their numbers in the paper", ("elastic_modes",), sources=SAMPLES
+    ),
+    "airliner_modes": Product("Eigenvalues in trim", ("modes",), sources=SAMPLES),
+    "airliner_left_out_modes": Product(
+        "What the modes left out of the aerodynamics change", ("left_out_modes",), sources=SAMPLES
+    ),
+    "airliner_cost": Product("Cost of ninety flights", ("flight_cost",), sources=SAMPLES),
+    "airliner_limits": Product("States beyond the network's limits", ("limits",), sources=SAMPLES),
 }

@@ -28,22 +28,6 @@ from flexsurr.report.rollout_figures import phase_plane, rollouts
 from flexsurr.report.schematics import figure_05, figure_06, figure_07, figure_11
 from flexsurr.report.training_figures import training_epochs, training_loss
 
-AIRLINER_DRAW: dict[str, Callable[..., Figure]] = {
-    draw.__name__: draw
-    for draw in (
-        figure_16,
-        figure_17,
-        figure_18,
-        figure_19,
-        figure_20,
-        figure_21,
-        aileron_doublet,
-        rudder_doublet,
-        elastic_modes,
-        coefficient_errors,
-    )
-}
-
 DRAW: dict[str, Callable[..., Figure]] = {
     draw.__name__: draw
     for draw in (
@@ -72,5 +56,15 @@ DRAW: dict[str, Callable[..., Figure]] = {
         phase_plane,
         training_loss,
         training_epochs,
+        figure_16,
+        figure_17,
+        figure_18,
+        figure_19,
+        figure_20,
+        figure_21,
+        aileron_doublet,
+        rudder_doublet,
+        elastic_modes,
+        coefficient_errors,
     )
 }

@@ -6,7 +6,14 @@ from pathlib import Path
 
 import pandas as pd
 
-from flexsurr.evaluation.columns import COST_COLUMNS, FREQUENCY_COLUMNS, STATIC_COLUMNS
+from flexsurr.config.trial import FIELDS, MAPS, dimensions
+from flexsurr.evaluation.columns import (
+    ACCURACY_COLUMNS,
+    COST_COLUMNS,
+    FREQUENCY_COLUMNS,
+    MODE_COLUMNS,
+    STATIC_COLUMNS,
+)
 from flexsurr.evaluation.published import published_loss
 from flexsurr.report.architectures import architectures
 from flexsurr.report.seeds import seeds
@@ -43,7 +50,12 @@ TRAINING_COLUMNS = (
     "validation_nmse",
     "best_validation_nmse",
     "published_loss",
+    "sampling",
+    "lattice",
+    "networks",
+    "inputs",
 )
+"""Every setting of a trial has its column, empty for a run that takes none; those of maps are the last."""
 
 LEARNED_LOAD_COLUMNS = (
     "study",
@@ -98,7 +110,9 @@ def training(metrics: pd.DataFrame) -> pd.DataFrame:
     published = [
         published_loss({str(key): value for key, value in run.items()}) for run in metrics.to_dict("records")
     ]
-    frame = _columns(metrics.assign(published_loss=published), TRAINING_COLUMNS)
+    settings = [name for kind in (FIELDS, MAPS) for name in dimensions(kind) if name not in metrics.columns]
+    whole = metrics.assign(published_loss=published, **dict.fromkeys(settings))
+    frame = _columns(whole, TRAINING_COLUMNS)
     return frame.sort_values(["study", "variant", "validation_nmse", "run_id"], ignore_index=True)
 
 
@@ -122,6 +136,21 @@ def rollout_cost(costs: pd.DataFrame) -> pd.DataFrame:
     return _columns(costs, ROLLOUT_COST_COLUMNS)
 
 
+def airliner_accuracy(accuracy: pd.DataFrame) -> pd.DataFrame:
+    """airliner_accuracy.csv: every output of each selected map."""
+    return _columns(accuracy, ACCURACY_COLUMNS)
+
+
+def airliner_modes(modes: pd.DataFrame) -> pd.DataFrame:
+    """airliner_modes.csv: eigenvalues in trim, with the lattice and with the network."""
+    return _columns(modes, MODE_COLUMNS)
+
+
+def as_it_is(frame: pd.DataFrame) -> pd.DataFrame:
+    """The whole of what an evaluation wrote."""
+    return frame
+
+
 TABULATE: dict[str, Callable[[pd.DataFrame], pd.DataFrame]] = {
     tabulate.__name__: tabulate
     for tabulate in (
@@ -134,8 +163,12 @@ TABULATE: dict[str, Callable[[pd.DataFrame], pd.DataFrame]] = {
         learned_loads,
         rollout_errors,
         rollout_cost,
+        airliner_accuracy,
+        airliner_modes,
     )
-}
+} | dict.fromkeys(
+    ("airliner_elastic_modes", "airliner_left_out_modes", "airliner_cost", "airliner_limits"), as_it_is
+)
 """The functions that make the tables of the catalogue, by their names."""
 
 

@@ -1,16 +1,18 @@
-"""One trial on the airliner's samples: networks of coefficients, from random weights to the best ones."""
+"""One trial of a map on samples: by least squares, or from random weights to the best ones."""
 
 import math
-from dataclasses import dataclass
+import time
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Literal
+from typing import Any
 
 import numpy as np
 import pandas as pd
+from scipy.linalg import lstsq
 
 from flexsurr.aerodynamics.features import OUTPUT_GROUPS, SECOND_ORDER
-from flexsurr.config.trial import Iterative, MapNetwork
+from flexsurr.config.trial import Iterative, Map, MapNetwork, MapPolynomial
 from flexsurr.simulation.rhs import Array
 from flexsurr.surrogates.coefficient_network import (
     CoefficientNetwork,
@@ -18,32 +20,17 @@ from flexsurr.surrogates.coefficient_network import (
     side_by_side,
     with_products,
 )
+from flexsurr.surrogates.coefficient_polynomial import CoefficientPolynomial, terms
 from flexsurr.training.coefficient_data import CoefficientData
 from flexsurr.training.epochs import Limits, Report, run_epochs
+from flexsurr.training.fitting import Fit
 from flexsurr.training.levenberg_marquardt import LevenbergMarquardt
 from flexsurr.training.losses import nmse
 from flexsurr.training.optimiser import Optimiser
 from flexsurr.training.progress import Progress
 from flexsurr.training.structured_normal_equations import CoefficientObjective
 
-
-@dataclass(frozen=True, eq=False)
-class CoefficientFit:
-    """What a trial came to; losses are the nmse averaged over outputs, weights those that validated best.
-
-    `epochs` and `best_epoch` are the latest of its networks', `wall_s` [s] their sum. `history` has a row an
-    epoch: epoch, wall_s, train_loss, validation_loss, processor_s, outputs (the name of the group, or "all").
-    """
-
-    network: CoefficientNetwork
-    status: Literal["finished", "failed"]
-    reason: str
-    epochs: int
-    best_epoch: int
-    wall_s: float
-    train_nmse: float
-    validation_nmse: float
-    history: pd.DataFrame
+DEGREES = {"linear": 1, "quadratic": 2}
 
 
 def initial_weights(inputs: int, hidden: int, outputs: int, seed: int) -> Array:
@@ -59,41 +46,110 @@ def initial_weights(inputs: int, hidden: int, outputs: int, seed: int) -> Array:
     return np.concatenate([piece.ravel() for piece in pieces])
 
 
-def fit_coefficients(
-    trial: MapNetwork, data: CoefficientData, folder: str | Path, report: Report | None = None
-) -> CoefficientFit:
-    """Fit a network, or four side by side, to `data`, resuming from the checkpoints in `folder`.
+@dataclass(frozen=True, eq=False)
+class _Fitted:
+    """A network of some of the outputs: what is kept, what validated best, how it came about."""
 
-    Each ends after the trial's epochs, `time_limit_s` of processor time, or when the optimiser has nothing
-    left to do, and keeps the weights that validated best. `report(epoch, train_loss, validation_loss,
-    wall_s)` is called after each epoch; epochs of several networks are counted on. A loss that is not
-    finite ends the fit as failed, and a fit of which no epoch validates better than its start has failed too.
+    kept: CoefficientNetwork
+    best: CoefficientNetwork
+    progress: Progress
+    reason: str
+
+
+def fit_coefficients(
+    trial: Map, data: CoefficientData, folder: str | Path, report: Report | None = None
+) -> Fit:
+    """Fit a map to `data`, resuming from the checkpoints in `folder`: `fitting.fit` for trials of maps.
+
+    Polynomials are a linear least-squares solution. Four networks are fitted one after the other and stand
+    side by side: `epochs` and `best_epoch` are the latest of theirs, times their sums; epochs are reported
+    counted on. The history has a column more, `outputs`: the name of the group, or "all".
     """
+    if isinstance(trial, MapPolynomial):
+        return _polynomial(trial, data, report)
+    assert isinstance(trial, MapNetwork)
     if trial.networks == "one":
-        network, progress, reason = _fit_one(trial, data, Path(folder), report)
-        fits, reasons = {"all": progress}, [reason] if reason else []
+        fits = {"all": _fit_one(trial, data, Path(folder), report)}
     else:
-        network, fits, reasons = _fit_groups(trial, data, Path(folder), report)
-    kept = data.held_out
-    return CoefficientFit(
-        network=network,
-        status="failed" if reasons else "finished",
+        fits = _fit_groups(trial, data, Path(folder), report)
+    kept, best = (
+        side_by_side(networks, data.output_names) if len(networks) > 1 else networks[0]
+        for networks in ([fit.kept for fit in fits.values()], [fit.best for fit in fits.values()])
+    )
+    reasons = [
+        f"{name}: {fit.reason}" if len(fits) > 1 else fit.reason for name, fit in fits.items() if fit.reason
+    ]
+    outputs = [len(fit.kept.output_names) for fit in fits.values()]
+    every = [fit.progress for fit in fits.values()]
+    return _summary(
+        data,
+        kept,
+        best,
         reason="; ".join(reasons),
-        epochs=max(progress.epoch for progress in fits.values()),
-        best_epoch=max(progress.best_epoch for progress in fits.values()),
-        wall_s=sum(progress.wall_s for progress in fits.values()),
-        train_nmse=nmse(network(data.u[~kept]), data.y[~kept]),
-        validation_nmse=nmse(network(data.u[kept]), data.y[kept]),
+        epochs=max(progress.epoch for progress in every),
+        best_epoch=max(progress.best_epoch for progress in every),
+        wall_s=sum(progress.wall_s for progress in every),
+        processor_s=sum(progress.processor_s for progress in every),
+        final_loss=float(np.average([progress.final_loss for progress in every], weights=outputs)),
         history=pd.concat(
-            [progress.history().assign(outputs=name) for name, progress in fits.items()], ignore_index=True
+            [fit.progress.history().assign(outputs=name) for name, fit in fits.items()], ignore_index=True
         ),
     )
 
 
-def _fit_one(
-    trial: MapNetwork, data: CoefficientData, folder: Path, report: Report | None
-) -> tuple[CoefficientNetwork, Progress, str]:
-    """One network of all outputs of `data`, how it came about, and why it failed, or ""."""
+def fit_coefficient_polynomial(data: CoefficientData, degree: int) -> CoefficientPolynomial:
+    """The polynomial with the least squared errors over the training samples."""
+    x, y = data.scaled_u[~data.held_out], data.y[~data.held_out]
+    weights, *_ = lstsq(terms(x, degree), y)
+    return CoefficientPolynomial(degree, weights, data.input_low, data.input_high)
+
+
+def _polynomial(trial: MapPolynomial, data: CoefficientData, report: Report | None) -> Fit:
+    start, processor_start = time.perf_counter(), time.process_time()
+    fitted = fit_coefficient_polynomial(data, DEGREES[trial.architecture])
+    spent_s, processor_s = time.perf_counter() - start, time.process_time() - processor_start
+    kept = data.held_out
+    losses = [nmse(fitted(data.u[chosen]), data.y[chosen]) for chosen in (~kept, kept)]
+    progress = Progress(math.inf, fitted.parameters)
+    progress.add(spent_s, losses[0], losses[1], fitted.parameters, processor_s)
+    if report is not None:
+        report(1, losses[0], losses[1], spent_s)
+    return _summary(
+        data,
+        fitted,
+        fitted,
+        reason="",
+        epochs=1,
+        best_epoch=1,
+        wall_s=spent_s,
+        processor_s=processor_s,
+        final_loss=losses[0],
+        history=progress.history().assign(outputs="all"),
+    )
+
+
+def _summary(data: CoefficientData, kept: Any, best: Any, *, reason: str, **figures: Any) -> Fit:
+    held_out = data.held_out
+    errors = [
+        np.mean((network(data.u[chosen]) - data.y[chosen]) ** 2, axis=0) / np.var(data.y[chosen], axis=0)
+        for network, chosen in ((kept, ~held_out), (kept, held_out), (best, held_out))
+    ]
+    return Fit(
+        surrogate=kept,
+        best=best,
+        status="failed" if reason else "finished",
+        reason=reason,
+        train_nmse=float(errors[0].mean()),
+        validation_nmse=float(errors[1].mean()),
+        best_validation_nmse=float(errors[2].mean()),
+        parameters=kept.parameters.size,
+        validation_nmse_per_state=tuple(errors[1].tolist()),
+        **figures,
+    )
+
+
+def _fit_one(trial: MapNetwork, data: CoefficientData, folder: Path, report: Report | None) -> _Fitted:
+    """One network of all outputs of `data`."""
     assert isinstance(trial, Iterative)
     (hidden,) = trial.hidden
     products = SECOND_ORDER if trial.inputs == "second_order" else ()
@@ -103,8 +159,9 @@ def _fit_one(
         for chosen in (~data.held_out, data.held_out)
     )
     start = initial_weights(x.shape[1], hidden, y.shape[1], trial.seed)
+    optimiser = _optimiser(trial, training, start)
     progress, reason = run_epochs(
-        _optimiser(trial, training, start),
+        optimiser,
         validation,
         start,
         Limits(trial.epochs, trial.patience, trial.time_limit_s),
@@ -112,7 +169,7 @@ def _fit_one(
         {"trial": trial.model_dump(mode="json"), "dataset": data.sha256, "outputs": data.output_names},
         report,
     )
-    network = CoefficientNetwork(
+    best = CoefficientNetwork(
         parameters=progress.best_parameters,
         hidden=hidden,
         activation=trial.activation,
@@ -124,25 +181,22 @@ def _fit_one(
         output_names=data.output_names,
         products=products,
     )
-    return network, progress, reason
+    last = replace(best, parameters=optimiser.parameters)
+    return _Fitted(best if reason or trial.keep == "best" else last, best, progress, reason)
 
 
 def _fit_groups(
     trial: MapNetwork, data: CoefficientData, folder: Path, report: Report | None
-) -> tuple[CoefficientNetwork, dict[str, Progress], list[str]]:
-    """A network for each of OUTPUT_GROUPS as one, how each came about, and why those that failed did."""
-    networks: list[CoefficientNetwork] = []
-    fits: dict[str, Progress] = {}
-    reasons: list[str] = []
+) -> dict[str, _Fitted]:
+    """A network for each of OUTPUT_GROUPS."""
+    fits: dict[str, _Fitted] = {}
     for name, outputs in OUTPUT_GROUPS.items():
-        before = sum(progress.epoch for progress in fits.values())
+        before = sum(fit.progress.epoch for fit in fits.values())
         counted_on = report and partial(_report_after, report, before)
-        network, fits[name], reason = _fit_one(trial, data.only(outputs), folder / name, counted_on)
-        networks.append(network)
-        reasons += [f"{name}: {reason}"] if reason else []
+        fits[name] = _fit_one(trial, data.only(outputs), folder / name, counted_on)
         if (folder / name).is_dir():
             (folder / name).rmdir()
-    return side_by_side(networks, data.output_names), fits, reasons
+    return fits
 
 
 def _report_after(

@@ -5,7 +5,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import pandas as pd
@@ -58,11 +58,11 @@ class Fit:
     """What a trial came to: the surrogate that the trial keeps, and the one that validated best.
 
     `final_loss` is the last epoch's, as trained; all others are the nmse. A failed fit holds the best weights
-    it met: at epoch 0, the random ones it began with.
+    it met: at epoch 0, the random ones it began with. Of a map the states are its outputs.
     """
 
-    surrogate: Surrogate
-    best: Surrogate
+    surrogate: Any
+    best: Any
     status: Literal["finished", "failed"]
     reason: str
     epochs: int

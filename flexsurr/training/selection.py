@@ -28,6 +28,21 @@ def select(records: Iterable[Record]) -> dict[str, dict[str, Any]]:
     return selection
 
 
+def select_maps(records: Iterable[Record]) -> dict[str, dict[str, Any]]:
+    """Under each label the run of a map with the least validation nmse, failed runs left out.
+
+    Labels come in the order of `records`; equal errors go to the first.
+    """
+    best: dict[str, dict[str, Any]] = {}
+    for record in records:
+        error = record["validation_nmse"]
+        if record["status"] == "finished" and error is not None:
+            known = best.get(record["label"])
+            if known is None or error < known["validation_nmse"]:
+                best[record["label"]] = dict(record)
+    return best
+
+
 def _usable(record: Record) -> bool:
     return record["status"] == "finished" and record.get(ERROR) is not None and not record.get("diverged")
 

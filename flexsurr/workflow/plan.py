@@ -19,11 +19,11 @@ from flexsurr.config.part import values_of
 from flexsurr.config.settings import Configuration
 from flexsurr.config.sources import ResolvedFiles, ResolvedSampleStudy, ResolvedStudy
 from flexsurr.config.study import CONFIGURATIONS, DEFAULT, Study
-from flexsurr.config.trial import Trial, configurations_of
-from flexsurr.report.catalogue import FIGURES, TABLES, Product
+from flexsurr.config.trial import Architecture, Trial, configurations_of
+from flexsurr.report.catalogue import FIGURES, OF_AIRCRAFT, TABLES, Product
 from flexsurr.training.sweep import expand, run_id
-from flexsurr.workflow.airliner_plan import AirlinerPlan
 from flexsurr.workflow.recorded import misfits, read_recorded
+from flexsurr.workflow.sample_plan import EVALUATED, SamplePlan
 
 Job = dict[str, Any]
 
@@ -93,7 +93,7 @@ class Run:
     study: str
     variant: str
     dataset: str
-    trial: Trial
+    trial: Architecture
 
     @property
     def data(self) -> str:
@@ -117,7 +117,7 @@ class Plan:
             if isinstance(study, ResolvedStudy | ResolvedFiles)
         }
         self.of_samples = {
-            study.name: AirlinerPlan(study)
+            study.name: SamplePlan(study)
             for study in configuration.studies
             if isinstance(study, ResolvedSampleStudy)
         }
@@ -131,11 +131,16 @@ class Plan:
     @cached_property
     def runs(self) -> dict[str, Run]:
         """Training runs by their run_id."""
-        return {
+        of_fields = {
             key: run
             for name in self.studies
             for runs in self._sweeps(name).values()
             for key, run in runs.items()
+        }
+        return of_fields | {
+            key: Run(name, trial.dataset, DEFAULT, trial)
+            for name, samples in self.of_samples.items()
+            for key, trial in samples.runs.items()
         }
 
     def _sweeps(self, study: str) -> dict[str, dict[str, Run]]:
@@ -182,8 +187,14 @@ class Plan:
         }
         return {**job, "configuration": _hash(job)}
 
+    def simulator(self, study: str) -> str:
+        """The command that makes the shards of one study."""
+        return "sample" if study in self.of_samples else "simulate"
+
     def simulate(self, study: str, data: str, shard: int | str) -> Job:
-        """One shard, by its number: trajectories `first` to `first + count − 1`."""
+        """One shard, by its number: trajectories, or samples, `first` to `first + count − 1`."""
+        if study in self.of_samples:
+            return self.of_samples[study].simulate(data, shard)
         dataset = self._settings(study, data).dataset
         first = int(shard) * dataset.trajectories_per_shard
         return {
@@ -239,6 +250,8 @@ class Plan:
     def train(self, key: str) -> Job:
         """One training run."""
         run = self.runs[key]
+        if run.study in self.of_samples:
+            return self.of_samples[run.study].train(key)
         values = self._configurations(run.study, run.data)
         return {
             **values,
@@ -251,8 +264,10 @@ class Plan:
         }
 
     def trains_on(self, key: str) -> list[str]:
-        """The manifest that a run reads, below the results; none where it needs no simulation."""
+        """The manifest or the shards that a run reads, below the results; none for configurations."""
         run = self.runs[key]
+        if run.study in self.of_samples:
+            return self.of_samples[run.study].files(run.data)
         return [] if configurations_of(run.trial) else [f"datasets/{run.study}/{run.data}/manifest.json"]
 
     def _configurations(self, study: str, data: str) -> Job:
@@ -262,16 +277,35 @@ class Plan:
         values = values_of(self._settings(study, data), SAMPLED)
         return {**self._part(study, ()), "part": values}
 
+    def scored_on(self, key: str) -> list[str]:
+        """The manifest on whose held-out samples a run is scored, below the results; none for a map."""
+        run = self.runs[key]
+        if run.study in self.of_samples:
+            return []
+        return [f"datasets/{run.study}/{run.variant}/manifest.json"]
+
     def score(self, key: str) -> Job:
         """Held-out errors and long responses of one run."""
         run = self.runs[key]
         if run.study in self._recorded:
             return {"part": values_of(self._files(run.study).study, ROLLOUTS)}
+        if run.study in self.of_samples:
+            return self.of_samples[run.study].score(key)
         return {**self._part(run.study, SCORE), "variant": run.variant}
 
     def select(self, study: str) -> Job:
         """The choice among the runs of each sweep of a study."""
+        if study in self.of_samples:
+            return self.of_samples[study].select()
         return {"study": study, "sweeps": {name: list(runs) for name, runs in self._sweeps(study).items()}}
+
+    def accuracy(self, study: str) -> Job:
+        """The errors of the selected maps."""
+        return self.of_samples[study].accuracy()
+
+    def fly(self, study: str) -> Job:
+        """Flights of a study's aircraft."""
+        return self.of_samples[study].fly()
 
     def statics(self, study: str) -> Job:
         """Static deflection and natural frequencies."""
@@ -310,7 +344,7 @@ class Plan:
     def files(self, study: str, read: str) -> list[str]:
         """The files below the results that hold what a product of flexsurr.report `read`s."""
         runs = {"metrics": "metrics.json", "history": "history.parquet"}
-        if read == "structure":
+        if read == "structure" or read in OF_AIRCRAFT:
             return []
         if read == "relatives":
             structure = self._simulated(study).structure
@@ -333,6 +367,8 @@ class Plan:
         """The names of the files that the evaluation of one study makes."""
         if study in self._recorded:
             return ["rollouts", "rollout_curves", "rollout_cost"]
+        if study in self.of_samples:
+            return list(EVALUATED)
         variants = self.variants(study)
         names = ["statics", "frequencies", "validation"]
         names += [f"response-{variant}-{response}" for variant in variants for response in DRAWN_RESPONSES]
@@ -348,6 +384,8 @@ class Plan:
         return self._products(study, TABLES)
 
     def _products(self, study: str, catalogue: Mapping[str, Product]) -> list[str]:
+        if study in self.of_samples:
+            return [name for name, product in catalogue.items() if "samples" in product.sources]
         resolved = self.studies[study]
         return [
             name
@@ -372,6 +410,8 @@ class Plan:
         reads: Job = {"reads": {read: self.files(study, read) for read in product.reads}}
         if "structure" in product.reads:
             reads["structure"] = self._simulated(study).structure.model_dump(mode="json")
+        if not OF_AIRCRAFT.isdisjoint(product.reads):
+            reads["aircraft"] = self.fly(study)
         return reads
 
     def _part(self, study: str, keys: tuple[str, ...]) -> Job:

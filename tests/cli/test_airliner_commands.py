@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from flexsurr.aerodynamics.features import COEFFICIENTS
-from flexsurr.cli import sample_aerodynamics, select_coefficients, store, train_coefficients
+from flexsurr.cli import accuracy, sample, score, select, store, train
 from flexsurr.config.settings import load
 from flexsurr.storage import StorageError, read_samples
 from flexsurr.surrogates.coefficient_network import load_coefficient_network
@@ -25,14 +25,18 @@ def results(tmp_path_factory) -> Path:
     root = tmp_path_factory.mktemp("results")
     for name in {trial.dataset for trial in PLAN.runs.values()}:
         for shard in range(PLAN.shards):
-            sample_aerodynamics.main(PLAN.sample(name, shard), shard_path(root, shard, name))
+            sample.main(PLAN.simulate(name, shard), shard_path(root, shard, name))
     store.main({"uri": None, "studies": ["airliner"]}, root / "mlflow" / "airliner.json")
     for run_id, trial in PLAN.runs.items():
         shards = [shard_path(root, shard, trial.dataset) for shard in range(PLAN.shards)]
-        train_coefficients.main(
-            PLAN.train(run_id), shards, root / "mlflow" / "airliner.json", root / "runs" / run_id
-        )
-    select(root)
+        folder = root / "runs" / run_id
+        train.main(PLAN.train(run_id), shards, root / "mlflow" / "airliner.json", folder)
+        weights = (folder / "weights.npz", folder / "best.npz")
+        score.main(PLAN.score(run_id), folder / "fit.json", *weights, [], folder / "metrics.json")
+    choose(root / "runs", root, root / "selected.json")
+    every = [shard_path(root, shard, name) for name in PLAN.datasets() for shard in range(PLAN.shards)]
+    tables = (root / "accuracy.parquet", root / "errors.parquet")
+    accuracy.main(PLAN.accuracy(), root / "selected.json", root / "runs", every, *tables)
     return root
 
 
@@ -40,19 +44,13 @@ def shard_path(root: Path, shard: int, name: str = "pseudo_random") -> Path:
     return root / name / f"shard-{shard:04d}.parquet"
 
 
-def select(root: Path) -> None:
-    select_coefficients.main(
-        PLAN.select(),
-        root / "runs",
-        root / "mlflow" / "airliner.json",
-        root / "selected.json",
-        root / "airliner_accuracy.csv",
-    )
+def choose(runs: Path, root: Path, output: Path) -> None:
+    select.main(PLAN.select(), runs, root / "mlflow" / "airliner.json", output)
 
 
 def test_a_shard_comes_out_the_same_from_its_seed_and_number(results, tmp_path):
     again = tmp_path / "shard.parquet"
-    sample_aerodynamics.main(PLAN.sample("pseudo_random", 1), again)
+    sample.main(PLAN.simulate("pseudo_random", 1), again)
     first, second = read_samples(shard_path(results, 1)), read_samples(again)
     np.testing.assert_array_equal(first.u, second.u)
     np.testing.assert_array_equal(first.y, second.y)
@@ -61,7 +59,7 @@ def test_a_shard_comes_out_the_same_from_its_seed_and_number(results, tmp_path):
 
 
 def test_the_table_has_each_coefficient_once_for_each_model(results):
-    table = pd.read_csv(results / "airliner_accuracy.csv")
+    table = pd.read_parquet(results / "accuracy.parquet")
     assert list(table.columns) == ["output", "train_nmse", "validation_nmse", "validation_r2", "model"]
     assert set(table["model"]) == {trial.label for trial in PLAN.runs.values()}
     for model in set(table["model"]):
@@ -75,7 +73,7 @@ def test_the_selected_network_is_the_one_that_was_tabulated(results):
     network = load_coefficient_network(folder / "weights.npz")
     samples = read_samples(shard_path(results, 0))
     assert network(samples.u).shape == samples.y.shape
-    errors = pd.read_parquet(folder / "errors.parquet")
+    errors = pd.read_parquet(results / "errors.parquet")
     nmse = np.mean(errors[[f"error_{name}" for name in COEFFICIENTS]].to_numpy() ** 2)
     assert nmse == pytest.approx(chosen["validation_nmse"], rel=1e-9)
     assert len(errors) == round(0.2 * 96)
@@ -96,10 +94,8 @@ def test_without_a_network_that_finished_nothing_is_selected(results, tmp_path):
         figures["status"] = "failed"
         (runs / run_id).mkdir(parents=True)
         (runs / run_id / "metrics.json").write_text(json.dumps(figures))
-    with pytest.raises(StorageError, match="no network of the airliner has finished"):
-        select_coefficients.main(
-            PLAN.select(), runs, results / "mlflow" / "airliner.json", tmp_path / "s.json", tmp_path / "t.csv"
-        )
+    with pytest.raises(StorageError, match="no network of airliner has finished"):
+        choose(runs, results, tmp_path / "s.json")
 
 
 def test_samples_of_another_configuration_are_refused(results, tmp_path):
@@ -107,4 +103,4 @@ def test_samples_of_another_configuration_are_refused(results, tmp_path):
     job = {**PLAN.train(run_id), "configuration": "0" * 16}
     shards = [shard_path(results, shard) for shard in range(PLAN.shards)]
     with pytest.raises(StorageError, match=r"shard-0000\.parquet: belongs to the configuration"):
-        train_coefficients.main(job, shards, results / "mlflow" / "airliner.json", tmp_path)
+        train.main(job, shards, results / "mlflow" / "airliner.json", tmp_path)

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from flexsurr.__main__ import FOR_PEOPLE, commands
-from flexsurr.cli import join, pages
+from flexsurr.cli import join
 from flexsurr.config.settings import load
 from flexsurr.storage import read_shard
 from flexsurr.workflow.job_files import write_job
@@ -159,28 +159,12 @@ def test_simulating_needs_neither_torch_nor_mlflow_nor_matplotlib():
     assert done.stdout.strip() == "set()", done.stderr
 
 
-@pytest.mark.parametrize("module", ["cli.tabulate", "cli.join", "cli.pages", "workflow.plan"])
+@pytest.mark.parametrize("module", ["cli.tabulate", "cli.join", "workflow.plan"])
 def test_tables_and_plans_need_neither_kernels_nor_figures(module):
     heavy = {"numba", "scipy", "matplotlib", "torch", "mlflow"}
     code = f"import sys, flexsurr.{module}; print({heavy} & set(sys.modules))"
     done = subprocess.run([sys.executable, "-c", code], cwd=REPOSITORY, capture_output=True, text=True)
     assert done.stdout.strip() == "set()", done.stderr
-
-
-def test_tables_become_pages_with_title_and_caption(tmp_path):
-    (tmp_path / "limits.csv").write_text("input,beyond\nalpha,0.25\n")
-    (tmp_path / "limits.rst").write_text("What to\nsee in it.\n")
-    (tmp_path / "modes.csv").write_text("mode\n1\n")
-    (tmp_path / "modes.rst").write_text("Which modes.\n")
-    tables = [tmp_path / "limits.csv", tmp_path / "modes.csv"]
-    captions = [table.with_suffix(".rst") for table in tables]
-    pages.main({"titles": ["Limits", "Modes"]}, tables, captions, tmp_path / "pages")
-    limits = (tmp_path / "pages" / "limits.html").read_text()
-    for part in ("<h1>Limits</h1>", "What to see in it.", "<td>alpha</td>", '<td class="number">0.25</td>'):
-        assert part in limits
-    modes = (tmp_path / "pages" / "modes.html").read_text()
-    assert "<h1>Modes</h1>" in modes
-    assert "Which modes." in modes
 
 
 def test_tables_of_one_name_are_joined_to_the_letter(tmp_path):

@@ -8,15 +8,15 @@ import pytest
 from flexsurr.cli.flying import airliner_of, selected_networks
 from flexsurr.config.settings import load
 from flexsurr.storage import StorageError
-from flexsurr.workflow.airliner_flight_plan import flight_job
 from flexsurr.workflow.plan import Plan
 
 ROOT = Path(__file__).resolve().parents[2]
 
 
 def test_a_job_is_plain_data_from_which_the_airliner_comes_back():
-    study = Plan(load(ROOT, ["config/config.yaml"])).of_samples["airliner"].airliner
-    job = json.loads(json.dumps(flight_job(study)))
+    plan = Plan(load(ROOT, ["config/config.yaml"]))
+    study = plan.of_samples["airliner"].resolved
+    job = json.loads(json.dumps(plan.fly("airliner")))
     plane = airliner_of(job)
     assert plane.settings == study.study.flight
     assert plane.limits == study.limits

@@ -12,8 +12,8 @@ from flexsurr.config.errors import ConfigurationError
 from flexsurr.config.feature_limits import load_feature_limits
 from flexsurr.config.settings import load
 from flexsurr.config.trial import MapNetwork
-from flexsurr.workflow.airliner_plan import AirlinerPlan
 from flexsurr.workflow.plan import Plan
+from flexsurr.workflow.sample_plan import SamplePlan
 
 ROOT = Path(__file__).parents[2]
 STUDY = "config/studies/airliner.yaml"
@@ -21,7 +21,7 @@ LIMITS = "config/aircraft/gnba_limits.yaml"
 SWEEP = "config/sweeps/airliner.yaml"
 
 
-def airliner(root: Path) -> AirlinerPlan:
+def airliner(root: Path) -> SamplePlan:
     return Plan(load(root, ["config/config.yaml"])).of_samples["airliner"]
 
 
@@ -40,9 +40,9 @@ def edit(root: Path, file: str, old: str, new: str) -> None:
 
 def test_shards_cover_all_samples_once():
     plan = airliner(ROOT)
-    jobs = [plan.sample("sobol", shard) for shard in range(plan.shards)]
+    jobs = [plan.simulate("sobol", shard) for shard in range(plan.shards)]
     numbers = [n for job in jobs for n in range(job["first"], job["first"] + job["count"])]
-    assert numbers == list(range(plan.airliner.study.dataset.samples))
+    assert numbers == list(range(plan.resolved.study.dataset.samples))
 
 
 def test_there_are_baselines_and_the_network_of_the_study():
@@ -56,11 +56,11 @@ def test_a_changed_limit_asks_for_new_samples_and_a_changed_seed_of_weights_does
     before = airliner(copy)
     edit(copy, SWEEP, "epochs: [250]", "epochs: [251]")
     other_epochs = airliner(copy)
-    assert other_epochs.sample("sobol", 0) == before.sample("sobol", 0)
+    assert other_epochs.simulate("sobol", 0) == before.simulate("sobol", 0)
     assert other_epochs.runs.keys() != before.runs.keys()
     edit(copy, LIMITS, "low: 7000.0", "low: 7500.0")
     other_limits = airliner(copy)
-    assert other_limits.configuration("sobol") != before.configuration("sobol")
+    assert other_limits.dataset_hash("sobol") != before.dataset_hash("sobol")
     assert not other_limits.runs.keys() & before.runs.keys()
 
 

@@ -14,10 +14,13 @@ from flexsurr.aerodynamics.features import (
 )
 from flexsurr.config.trial import trial_of
 from flexsurr.storage import SampleMetadata, Samples
+from flexsurr.surrogates.coefficient_polynomial import (
+    load_coefficient_polynomial,
+    save_coefficient_polynomial,
+)
 from flexsurr.training.coefficient_accuracy import accuracy, held_out_errors
-from flexsurr.training.coefficient_baselines import fit_coefficient_polynomial
 from flexsurr.training.coefficient_data import coefficient_data
-from flexsurr.training.coefficient_fit import fit_coefficients
+from flexsurr.training.coefficient_fit import fit_coefficient_polynomial, fit_coefficients
 
 LOW, HIGH = np.array([-2.0, 0.0, 100.0]), np.array([1.0, 0.5, 300.0])
 
@@ -87,7 +90,7 @@ def test_a_network_learns_and_its_losses_are_those_of_the_table(tmp_path):
     fit = fit_coefficients(TRIAL, DATA, tmp_path)
     assert fit.status == "finished"
     assert fit.epochs == 30
-    table = accuracy(DATA, fit.network(DATA.u), "network")
+    table = accuracy(DATA, fit.surrogate(DATA.u), "network")
     assert table["validation_r2"].min() > 0.999
     assert fit.train_nmse == pytest.approx(table["train_nmse"].mean(), rel=1e-9)
     assert fit.validation_nmse == pytest.approx(table["validation_nmse"].mean(), rel=1e-9)
@@ -108,7 +111,7 @@ def test_interrupted_and_resumed_it_comes_to_the_same_weights(tmp_path, monkeypa
     epochs = []
     resumed = fit_coefficients(TRIAL, DATA, folder, lambda epoch, *losses: epochs.append(epoch))
     assert epochs[0] == 12  # the eleventh was the last to be kept
-    np.testing.assert_array_equal(resumed.network.parameters, whole.network.parameters)
+    np.testing.assert_array_equal(resumed.surrogate.parameters, whole.surrogate.parameters)
     assert list(folder.iterdir()) == []
 
 
@@ -124,12 +127,12 @@ def test_four_networks_are_the_four_fits_of_their_outputs(tmp_path):
     fit = fit_coefficients(trial, data, tmp_path, lambda epoch, *losses: reported.append(epoch))
     assert reported == list(range(1, 21))
     assert list(tmp_path.iterdir()) == []
-    assert (fit.network.hidden, fit.network.output_names) == (16, COEFFICIENTS)
+    assert (fit.surrogate.hidden, fit.surrogate.output_names) == (16, COEFFICIENTS)
     single = trial.model_copy(update={"networks": "one"})
     for name, outputs in OUTPUT_GROUPS.items():
         alone = fit_coefficients(single, data.only(outputs), tmp_path)
         places = [COEFFICIENTS.index(output) for output in outputs]
-        np.testing.assert_allclose(fit.network(data.u)[:, places], alone.network(data.u), atol=1e-12)
+        np.testing.assert_allclose(fit.surrogate(data.u)[:, places], alone.surrogate(data.u), atol=1e-12)
         losses = fit.history.loc[fit.history["outputs"] == name, "train_loss"]
         np.testing.assert_array_equal(losses, alone.history["train_loss"])
 
@@ -162,3 +165,28 @@ def test_lbfgs_lessens_the_loss_too(tmp_path):
     fit = fit_coefficients(trial, DATA, tmp_path)
     losses = fit.history["train_loss"]
     assert losses.iloc[-1] < 0.1 * losses.iloc[0]
+
+
+def test_the_last_weights_are_kept_where_the_trial_says_so(tmp_path):
+    """Of noisy samples the best are not the last: the network goes on to fit the noise of those it sees."""
+    samples = quadratic_samples(120)
+    noise = np.random.default_rng(7).standard_normal(samples.y.shape)
+    data = coefficient_data(dataclasses.replace(samples, y=samples.y + 0.5 * noise), 0.5, 1)
+    trial = TRIAL.model_copy(update={"keep": "last", "epochs": 60})
+    last, best = (
+        fit_coefficients(trial.model_copy(update={"keep": keep}), data, tmp_path) for keep in ("last", "best")
+    )
+    assert last.best_epoch == best.best_epoch < 60
+    np.testing.assert_array_equal(last.best.parameters, best.surrogate.parameters)
+    assert last.train_nmse < best.train_nmse
+    assert last.validation_nmse > best.validation_nmse == best.best_validation_nmse
+
+
+def test_a_polynomial_comes_back_from_its_file(tmp_path):
+    trial = trial_of(architecture="quadratic", optimiser="least_squares")
+    fit = fit_coefficients(trial, DATA, tmp_path)
+    assert (fit.status, fit.epochs) == ("finished", 1)
+    save_coefficient_polynomial(fit.surrogate, tmp_path / "weights.npz")
+    again = load_coefficient_polynomial(tmp_path / "weights.npz")
+    np.testing.assert_array_equal(again(DATA.u), fit.surrogate(DATA.u))
+    assert fit.parameters == again.parameters.size == 20

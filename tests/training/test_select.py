@@ -3,6 +3,7 @@
 import itertools
 
 from flexsurr.training import select
+from flexsurr.training.selection import select_maps
 
 
 def record(run, architecture="hnn", error=1.0, parameters=64, variant="hamiltonian", **more):
@@ -58,3 +59,18 @@ def test_order_does_not_matter():
 def test_nothing_to_choose_from():
     assert select([]) == {}
     assert select([RECORDS[6]]) == {}
+
+
+def test_of_maps_the_best_of_each_label_by_its_loss():
+    records = [
+        {"run_id": "failed", "label": "network", "status": "failed", "validation_nmse": 1e-9},
+        {"run_id": "first", "label": "network", "status": "finished", "validation_nmse": 1e-3},
+        {"run_id": "better", "label": "network", "status": "finished", "validation_nmse": 1e-4},
+        {"run_id": "no number", "label": "linear", "status": "finished", "validation_nmse": None},
+        {"run_id": "baseline", "label": "linear", "status": "finished", "validation_nmse": 1.0},
+    ]
+    chosen = select_maps(records)
+    assert {label: entry["run_id"] for label, entry in chosen.items()} == {
+        "network": "better",
+        "linear": "baseline",
+    }

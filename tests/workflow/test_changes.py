@@ -9,6 +9,7 @@ from project import CONFIGURATION
 from flexsurr.config.settings import load
 from flexsurr.report.catalogue import FIGURES, TABLES
 from flexsurr.workflow.plan import Plan
+from flexsurr.workflow.sample_plan import EVALUATED
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 BEAM = "cantilever"
@@ -19,27 +20,27 @@ SWEEP = "config/sweeps/quick.yaml"
 PLAN = Plan(load(REPOSITORY, CONFIGURATION))
 
 
-def products_of(*reads: str) -> dict[str, int]:
-    """How many figures and tables of the beam show any of what they `read`; the tables are then joined."""
-    figures = [FIGURES[name] for name in PLAN.figures(BEAM)]
+def products_of(*reads: str, study: str = BEAM) -> dict[str, int]:
+    """How many figures and tables of a study show any of what they `read`; the tables are then joined."""
+    figures = [FIGURES[name] for name in PLAN.figures(study)]
+    tables = [TABLES[name] for name in PLAN.tables(study)]
     drawn, tabulated = (
         sum(not set(reads).isdisjoint(product.reads) for product in products)
-        for products in (figures, TABLES.values())
+        for products in (figures, tables)
     )
     return {name: count for name, count in (("draw", drawn), ("tabulate", tabulated), ("join", 1)) if count}
 
 
 RUNS = ("metrics", "relatives", "history")
-COSTS = ("cost-*-*",)
+COSTS = ("cost-*-*", "cost-*")
 RESPONSES = ("response-*-free", "response-*-forced", "response-*-sustained", "energy-*")
 SELECTED = {"select": 1, "responses": 2, "evaluate": 4, **products_of(*RUNS, *COSTS, *RESPONSES)}
 FLOWN = {
-    "select_coefficients": 1,
+    "select": 1,
+    "accuracy": 1,
     "fly": 1,
     "fly_randomly": 1,
-    "draw_airliner": 1,
-    "show_airliner": 1,
-    "join": 1,
+    **products_of("metrics", *EVALUATED, "cost-*", study="airliner"),
 }
 LEARNT = {
     "manifest": 2,
@@ -69,7 +70,7 @@ LEARNT = {
             "config/sweeps/airliner_quick.yaml",
             "spaces.1.epochs",
             [6],
-            {"train_coefficients": 1, **FLOWN},
+            {"train": 1, "score": 1, **FLOWN},
         ),
         ("config/config.yaml", "tracking.uri", "http://127.0.0.1:9", {}),
         ("config/config.yaml", "timing.cores", 1, {}),
@@ -86,7 +87,7 @@ def test_changing_a_value(copy_of_quick, file, keys, value, jobs):
         (
             "flexsurr/beam/compiled.py",
             {"simulate", "statics", "validation", "manifest", "train", "responses", "evaluate"},
-            {"select_coefficients"},
+            {"select", "accuracy", "fly"},
         ),
         (
             "flexsurr/evaluation/timing.py",

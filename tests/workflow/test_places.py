@@ -18,8 +18,6 @@ def test_a_study_with_a_hyphen_in_folders_with_spaces(make_project):
     )
     project.change("config/config.yaml", "studies", ["soft-beam"])
     project.change("config/config.yaml", "results", "my results")
-    project.change("config/config.yaml", "airliner", None)
-    project.change("config/presets/quick.yaml", "airliner", None)
     project.run_well("my results/evaluation/soft-beam/statics.parquet")
     assert (project.root / "my results/evaluation/soft-beam/statics.parquet").is_file()
 

@@ -1,10 +1,10 @@
-# Reference data: shards of trajectories, their manifest; statics; full against reduced order.
+# Reference data: shards of trajectories or samples, the manifest of trajectories; statics; full against reduced order.
 
 
 wildcard_constraints:
     study="|".join(STUDIES),
     variant="hamiltonian|as_printed|files",
-    data=r"((hamiltonian|as_printed)(-\w+)?)|files",
+    data=r"(hamiltonian|as_printed)(-\w+)?|files|(pseudo_random|sobol)(-linear_in_modes)?",
     response="free|forced",
     shard=r"\d+",
     figure="[a-z0-9_]+",
@@ -41,18 +41,19 @@ rule simulate:
     benchmark:
         f"{RESULTS}/benchmarks/simulate/{{study}}-{{data}}-{{shard}}.tsv"
     wildcard_constraints:
-        data=r"(hamiltonian|as_printed)(-\w+)?",
+        data=r"(hamiltonian|as_printed)(-\w+)?|(pseudo_random|sobol)(-linear_in_modes)?",
     threads: 1
     resources:
-        mem_mb=1000,
+        mem_mb=2000,
         runtime=60,
     params:
         job=job("simulate", "study", "data", "shard"),
-        code=code("simulate"),
+        command=lambda w: plan.simulator(w.study),
+        code=lambda w: code(plan.simulator(w.study)),
     message:
         "simulating shard {wildcards.shard} of {wildcards.study}, {wildcards.data}"
     shell:
-        "python -m flexsurr simulate --job {params.job:q} --output {output:q} > {log:q} 2>&1"
+        "python -m flexsurr {params.command} --job {params.job:q} --output {output:q} > {log:q} 2>&1"
 
 
 rule manifest:

@@ -13,7 +13,7 @@ onstart:
 
 rule train:
     input:
-        manifest=lambda w: [f"{RESULTS}/{file}" for file in plan.trains_on(w.run_id)],
+        data=lambda w: expand(f"{RESULTS}/{{file}}", file=plan.trains_on(w.run_id)),
     output:
         parameters=f"{RESULTS}/runs/{{run_id}}/parameters.json",
         weights=f"{RESULTS}/runs/{{run_id}}/weights.npz",
@@ -36,7 +36,7 @@ rule train:
     message:
         "training {wildcards.run_id}"
     shell:
-        "python -m flexsurr train --job {params.job:q} --manifest {input.manifest:q}"
+        "python -m flexsurr train --job {params.job:q} --data {input.data:q}"
         " --store {params.store:q} --folder {params.folder:q} > {log:q} 2>&1"
 
 
@@ -45,9 +45,7 @@ rule score:
         fit=rules.train.output.fit,
         weights=rules.train.output.weights,
         best=rules.train.output.best,
-        manifest=lambda w: (
-            f"{RESULTS}/datasets/{plan.runs[w.run_id].study}/{plan.runs[w.run_id].variant}/manifest.json"
-        ),
+        manifest=lambda w: expand(f"{RESULTS}/{{file}}", file=plan.scored_on(w.run_id)),
     output:
         f"{RESULTS}/runs/{{run_id}}/metrics.json",
     log:

@@ -36,8 +36,7 @@ except ConfigurationError as error:
     raise WorkflowError(str(error)) from None
 
 RESULTS = plan.settings.results
-STUDIES = list(plan.studies)
-AIRLINER = "airliner" in plan.of_samples
+STUDIES = list(plan.settings.studies)
 
 
 def write(name, job):

@@ -87,7 +87,6 @@ rule join:
             for study in STUDIES
             for name in plan.tables(study)
         ],
-        f"{RESULTS}/tables/airliner/cost.csv" if AIRLINER else [],
     output:
         expand(
             f"{RESULTS}/tables/{{name}}.csv",

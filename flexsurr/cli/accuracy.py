@@ -1,0 +1,44 @@
+"""What the selected maps err by, output by output, and where the network's errors lie."""
+
+import json
+from pathlib import Path
+
+import pandas as pd
+
+from flexsurr.cli.command import Job, command
+from flexsurr.cli.flying import load_map
+from flexsurr.cli.frames import write_frame
+from flexsurr.storage import read_all_samples
+from flexsurr.training.coefficient_accuracy import accuracy as accuracy_of
+from flexsurr.training.coefficient_accuracy import held_out_errors
+from flexsurr.training.coefficient_data import coefficient_data
+
+
+def main(job: Job, selection: Path, runs: Path, shards: list[Path], accuracy: Path, errors: Path) -> None:
+    """Write the accuracy of each selected map, and the errors of the network on its held-out samples."""
+    tables = []
+    for label, chosen in json.loads(selection.read_text(encoding="utf-8")).items():
+        name = chosen["variant"]
+        read = job["samples"][name]
+        samples = read_all_samples(
+            [path for path in shards if path.parent.name == name], read["configuration"], read["samples"]
+        )
+        data = coefficient_data(samples, read["held_out"], read["seed"])
+        predicted = load_map(runs, chosen)(data.u)
+        tables.append(accuracy_of(data, predicted, label))
+        if label == "network":
+            write_frame(errors, held_out_errors(data, predicted))
+    write_frame(accuracy, pd.concat(tables, ignore_index=True))
+
+
+if __name__ == "__main__":
+    command(
+        main,
+        {
+            "selection": "the selected maps",
+            "runs": "the folder of all runs",
+            "shards": "of all samples …",
+            "accuracy": "one row an output and map",
+            "errors": "one row a held-out sample",
+        },
+    )
