@@ -28,6 +28,9 @@ from flexsurr.workflow.sample_plan import EVALUATED, SamplePlan
 Job = dict[str, Any]
 
 RESPONSE_KINDS = ("free", "forced")
+SIMULATORS = {"trajectories": "simulate", "samples": "sample"}
+"""The commands that make shards, by the source of a study."""
+
 DRAWN_RESPONSES = (*RESPONSE_KINDS, "sustained")
 
 # What the trajectories of a dataset depend on, apart from the structure, the variant and their numbers.
@@ -188,8 +191,8 @@ class Plan:
         return {**job, "configuration": _hash(job)}
 
     def simulator(self, study: str) -> str:
-        """The command that makes the shards of one study."""
-        return "sample" if study in self.of_samples else "simulate"
+        """The command that makes the shards of one study: each depends on its own code alone."""
+        return SIMULATORS["samples" if study in self.of_samples else "trajectories"]
 
     def simulate(self, study: str, data: str, shard: int | str) -> Job:
         """One shard, by its number: trajectories, or samples, `first` to `first + count − 1`."""

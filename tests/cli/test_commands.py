@@ -14,7 +14,7 @@ from flexsurr.cli import join
 from flexsurr.config.settings import load
 from flexsurr.storage import read_shard
 from flexsurr.workflow.job_files import write_job
-from flexsurr.workflow.plan import Plan
+from flexsurr.workflow.plan import SIMULATORS, Plan
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 PLAN = Plan(load(REPOSITORY, ["config/config.yaml", "config/presets/quick.yaml"]))
@@ -107,7 +107,7 @@ def test_a_command_told_to_stop_closes_what_is_open(tmp_path, sent, code):
 def test_help_lists_every_command_of_the_rules_and_what_each_code_means():
     text = run("--help").stdout
     rules = "".join(path.read_text() for path in (REPOSITORY / "workflow" / "rules").glob("*.smk"))
-    called = set(re.findall(r"python -m flexsurr ([a-z-]+)", rules))
+    called = set(re.findall(r"python -m flexsurr ([a-z-]+)", rules)) | set(SIMULATORS.values())
     assert called
     assert called | set(FOR_PEOPLE) == set(commands())
     for part in (*commands().items(), "for you", "snakemake", "130"):
