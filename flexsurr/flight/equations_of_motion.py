@@ -41,10 +41,24 @@ from flexsurr.aerodynamics.features import (
 )
 from flexsurr.aerodynamics.stability_axes import reflected
 from flexsurr.aerodynamics.standard_atmosphere import density, speed_of_sound
+from flexsurr.flight.states import (
+    ALTITUDE_M,
+    EAST_M,
+    NORTH_M,
+    PHI,
+    PSI,
+    RIGID_STATES,
+    THETA,
+    P,
+    Q,
+    R,
+    U,
+    V,
+    W,
+)
 from flexsurr.simulation.mapping import mapping
 from flexsurr.simulation.rhs import Array, implements_rhs
 
-RIGID_STATES = 12
 INPUTS = len(FEATURES)
 SCRATCH = INPUTS + len(COEFFICIENTS)
 
@@ -81,15 +95,15 @@ class FlexibleAircraft(NamedTuple):
 def write_features(kernel, t, x, features):
     """Write the 25 inputs of the aerodynamics at time `t` [s] and state `x` (d,) into `features` (25,)."""
     k_modes = kernel.omega_squared.size
-    u, v, w = x[6], x[7], x[8]
+    u, v, w = x[U], x[V], x[W]
     airspeed = math.sqrt(u * u + v * v + w * w)
     over = 1.0 / airspeed
-    features[MACH] = airspeed / speed_of_sound(x[2])
-    features[ALTITUDE] = x[2]
+    features[MACH] = airspeed / speed_of_sound(x[ALTITUDE_M])
+    features[ALTITUDE] = x[ALTITUDE_M]
     features[ALPHA] = math.atan2(w, u)
     features[BETA] = math.asin(v * over)
     for i in range(3):
-        features[RATE_P + i] = x[9 + i] * over
+        features[RATE_P + i] = x[P + i] * over
     sign = 0.0
     if kernel.times[0] <= t < kernel.times[1]:
         sign = 1.0
@@ -107,40 +121,40 @@ def write_features(kernel, t, x, features):
 def write_motion(kernel, x, coefficients, dx):
     """Write ẋ (d,) into `dx`, with the 12 coefficients given."""
     k_modes = kernel.omega_squared.size
-    phi, theta, psi = x[3], x[4], x[5]
-    u, v, w = x[6], x[7], x[8]
-    p, q, r = x[9], x[10], x[11]
+    phi, theta, psi = x[PHI], x[THETA], x[PSI]
+    u, v, w = x[U], x[V], x[W]
+    p, q, r = x[P], x[Q], x[R]
     speed_squared = u * u + v * v + w * w
-    pressure = 0.5 * density(x[2]) * speed_squared * kernel.area
+    pressure = 0.5 * density(x[ALTITUDE_M]) * speed_squared * kernel.area
 
     sin_phi, cos_phi = math.sin(phi), math.cos(phi)
     sin_theta, cos_theta = math.sin(theta), math.cos(theta)
     sin_psi, cos_psi = math.sin(psi), math.cos(psi)
     # kinematics
-    dx[0] = (
+    dx[NORTH_M] = (
         cos_theta * cos_psi * u
         + (sin_phi * sin_theta * cos_psi - cos_phi * sin_psi) * v
         + (cos_phi * sin_theta * cos_psi + sin_phi * sin_psi) * w
     )
-    dx[1] = (
+    dx[EAST_M] = (
         cos_theta * sin_psi * u
         + (sin_phi * sin_theta * sin_psi + cos_phi * cos_psi) * v
         + (cos_phi * sin_theta * sin_psi - sin_phi * cos_psi) * w
     )
-    dx[2] = sin_theta * u - sin_phi * cos_theta * v - cos_phi * cos_theta * w
+    dx[ALTITUDE_M] = sin_theta * u - sin_phi * cos_theta * v - cos_phi * cos_theta * w
     turn = (q * sin_phi + r * cos_phi) / cos_theta
-    dx[3] = p + turn * sin_theta
-    dx[4] = q * cos_phi - r * sin_phi
-    dx[5] = turn
+    dx[PHI] = p + turn * sin_theta
+    dx[THETA] = q * cos_phi - r * sin_phi
+    dx[PSI] = turn
     # forces
     per_mass = pressure / kernel.mass
     # α by its tangent w / u
     inclined = 1.0 / math.sqrt(u * u + w * w)
     c_x, c_z = reflected(w * inclined, u * inclined, coefficients[LIFT], coefficients[DRAG])
     g = kernel.gravity
-    dx[6] = per_mass * c_x + kernel.thrust / kernel.mass - g * sin_theta - q * w + r * v
-    dx[7] = per_mass * coefficients[SIDE] + g * cos_theta * sin_phi - r * u + p * w
-    dx[8] = per_mass * c_z + g * cos_theta * cos_phi - p * v + q * u
+    dx[U] = per_mass * c_x + kernel.thrust / kernel.mass - g * sin_theta - q * w + r * v
+    dx[V] = per_mass * coefficients[SIDE] + g * cos_theta * sin_phi - r * u + p * w
+    dx[W] = per_mass * c_z + g * cos_theta * cos_phi - p * v + q * u
     # moments
     inertia, inverse = kernel.inertia, kernel.inverse_inertia
     hx = inertia[0, 0] * p + inertia[0, 1] * q + inertia[0, 2] * r
@@ -151,7 +165,7 @@ def write_motion(kernel, x, coefficients, dx):
     my = pressure * kernel.chord * coefficients[PITCH] + thrust_moment - (r * hx - p * hz)
     mz = pressure * kernel.span * coefficients[YAW] - (p * hy - q * hx)
     for i in range(3):
-        dx[9 + i] = inverse[i, 0] * mx + inverse[i, 1] * my + inverse[i, 2] * mz
+        dx[P + i] = inverse[i, 0] * mx + inverse[i, 1] * my + inverse[i, 2] * mz
     # elastic modes
     for i in range(k_modes):
         eta, rate = x[RIGID_STATES + i], x[RIGID_STATES + k_modes + i]

@@ -8,9 +8,16 @@ from numpy.typing import ArrayLike
 from flexsurr.aerodynamics.features import CONTROLS, FEATURES, MODES
 from flexsurr.aerodynamics.standard_atmosphere import GRAVITY
 from flexsurr.flight.airliner import DEFAULT_MODES
-from flexsurr.flight.equations_of_motion import RIGID_STATES, SCRATCH, FlexibleAircraft, features_along
+from flexsurr.flight.equations_of_motion import SCRATCH, FlexibleAircraft, features_along
 from flexsurr.flight.modes import FreeModes
-from flexsurr.flight.states import state_names, state_units
+from flexsurr.flight.states import (
+    ALTITUDE_M,
+    RATES_IN_X,
+    RIGID_STATES,
+    VELOCITY_IN_X,
+    state_names,
+    state_units,
+)
 from flexsurr.simulation.mapping import CompiledMapping
 from flexsurr.simulation.rhs import Array, evaluate
 
@@ -88,12 +95,12 @@ class FlightModel:
         k = len(self.modes.omega_rad_s)
         properties = self.modes.properties
         inertia = TO_BODY @ properties.inertia @ TO_BODY
-        rates = x[..., 9:12]
+        rates = x[..., RATES_IN_X]
         eta, eta_dot = x[..., RIGID_STATES : RIGID_STATES + k], x[..., RIGID_STATES + k :]
-        kinetic = 0.5 * properties.mass * np.sum(x[..., 6:9] ** 2, axis=-1)
+        kinetic = 0.5 * properties.mass * np.sum(x[..., VELOCITY_IN_X] ** 2, axis=-1)
         kinetic = kinetic + 0.5 * np.einsum("...i,ij,...j", rates, inertia, rates)
         elastic = 0.5 * np.sum(eta_dot**2 + (self.modes.omega_rad_s * eta) ** 2, axis=-1)
-        return np.asarray(kinetic + elastic + properties.mass * self.gravity_m_s2 * x[..., 2])
+        return np.asarray(kinetic + elastic + properties.mass * self.gravity_m_s2 * x[..., ALTITUDE_M])
 
     def with_doublet(self, doublet: Doublet | None) -> "FlightModel":
         """The same aircraft with another pilot's input."""

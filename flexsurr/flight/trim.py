@@ -7,8 +7,9 @@ import numpy as np
 
 from flexsurr.aerodynamics.standard_atmosphere import speed_of_sound
 from flexsurr.config.flight import FlightCondition, TrimLimits
-from flexsurr.flight.equations_of_motion import RIGID_STATES, FlexibleAircraft
+from flexsurr.flight.equations_of_motion import FlexibleAircraft
 from flexsurr.flight.model import FlightModel
+from flexsurr.flight.states import ALTITUDE_M, PHI, RIGID_STATES, THETA, U, W
 from flexsurr.simulation.rhs import Array, evaluate
 
 _ITERATIONS = 30
@@ -46,7 +47,7 @@ class Trim:
     @property
     def alpha_rad(self) -> float:
         """Angle of attack."""
-        return float(np.arctan2(self.state[8], self.state[6]))
+        return float(np.arctan2(self.state[W], self.state[U]))
 
     @property
     def eta(self) -> Array:
@@ -122,10 +123,10 @@ class _Problem:
         """The state (d,) of level flight with these unknowns."""
         alpha, _, _, phi, *_ = values = unknowns * self._sizes
         x = np.zeros(RIGID_STATES + 2 * self._modes)
-        x[2] = self.condition.altitude_m
-        x[3] = phi
-        x[4] = np.arctan(np.cos(phi) * np.tan(alpha))  # no climb
-        x[6], x[8] = self._speed * np.cos(alpha), self._speed * np.sin(alpha)
+        x[ALTITUDE_M] = self.condition.altitude_m
+        x[PHI] = phi
+        x[THETA] = np.arctan(np.cos(phi) * np.tan(alpha))  # no climb
+        x[U], x[W] = self._speed * np.cos(alpha), self._speed * np.sin(alpha)
         x[RIGID_STATES : RIGID_STATES + self._modes] = values[len(_SIZES) :]
         return x
 
@@ -146,7 +147,7 @@ class _Problem:
         x = self.state(unknowns)
         dx = np.empty_like(x)
         evaluate(kernel, 0.0, x, dx, self._work)
-        return np.concatenate([dx[6:RIGID_STATES], dx[RIGID_STATES + self._modes :]])
+        return np.concatenate([dx[U:RIGID_STATES], dx[RIGID_STATES + self._modes :]])
 
     def left(self, residual: Array) -> str:
         """Residuals in words, the largest elastic one alone."""
@@ -160,7 +161,7 @@ class _Problem:
 
 def _within(limits: TrimLimits, problem: _Problem, unknowns: Array, residual: Array) -> Trim:
     state, controls, thrust = problem.state(unknowns), problem.controls(unknowns), problem.thrust(unknowns)
-    alpha = float(np.degrees(np.arctan2(state[8], state[6])))
+    alpha = float(np.degrees(np.arctan2(state[W], state[U])))
     beyond = []
     clipped = unknowns.copy()
     checks = (

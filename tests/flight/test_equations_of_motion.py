@@ -12,6 +12,7 @@ from flexsurr.aerodynamics.standard_atmosphere import density, speed_of_sound
 from flexsurr.aerodynamics.vortex_lattice import rebuilt
 from flexsurr.config.panels import PanelCounts
 from flexsurr.config.study import Integrator
+from flexsurr.flight import states
 from flexsurr.flight.airliner import flexible_airframe
 from flexsurr.flight.linear_aerodynamics import derivatives, linear_aerodynamics
 from flexsurr.flight.model import TO_BODY, Doublet, FlightModel, features
@@ -201,3 +202,11 @@ def test_modes_that_are_not_there_are_refused(gnba_modes):
         airless(gnba_modes, chosen=(1, 9))
     with pytest.raises(ValueError, match="slopes"):
         linear_aerodynamics(np.zeros(25), np.zeros(12), np.zeros((12, 24)))
+
+
+def test_every_state_is_found_by_its_name_where_it_stands():
+    for place, name in enumerate(states.state_names(2)[: states.RIGID_STATES]):
+        assert getattr(states, name.upper()) == place
+    assert states.state_names(2)[states.RIGID_STATES :] == ("eta_1", "eta_2", "eta_dot_1", "eta_dot_2")
+    assert states.state_names(0)[states.VELOCITY_IN_X] == states.VELOCITY
+    assert states.state_names(0)[states.RATES_IN_X] == states.RATES
