@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexsurr.aerodynamics.features import CONTROLS
+from flexsurr.aerodynamics.planform import Planform
 from flexsurr.config.aircraft import ControlSurface, Surface
 from flexsurr.simulation.rhs import Array
 
@@ -92,8 +93,8 @@ def panel(
     outline = _Outline(surface, vertical)
     stations = outline.stations(spanwise, flap.span if flap else ())
     edges = _chordwise_edges(chordwise, flap.hinge if flap else 0.0)
-    leading, chord, _ = outline.at(stations)
-    _, _, angle = outline.at(0.5 * (stations[1:] + stations[:-1]))
+    leading, chord = outline.leading_edge(stations), outline.chord(stations)
+    angle = outline.angle(0.5 * (stations[1:] + stations[:-1]))
     x_axis = np.array([1.0, 0.0, 0.0])
 
     def points(fractions: Array) -> Array:
@@ -133,29 +134,18 @@ def panel(
     return lattice, axes.reshape(count, 3)
 
 
-class _Outline:
-    """Leading edge, chord and angle of a surface along its own length."""
+class _Outline(Planform):
+    """A planform cut into strips, and the angle of its chords."""
 
     def __init__(self, surface: Surface, vertical: bool) -> None:
-        self._lengths = np.array([section.length_m for section in surface.sections])
-        self._ends = np.concatenate([[0.0], np.cumsum(self._lengths)])
+        super().__init__(surface, vertical)
         self._surface = surface
-        dihedral = np.radians([section.dihedral_deg for section in surface.sections])
-        sweep = np.radians([section.sweep_deg for section in surface.sections])
-        if vertical:
-            dihedral = dihedral + 0.5 * np.pi
-        # sweep is that of the leading edge against its own projection on the y-z plane
-        steps = np.stack([np.tan(sweep), np.cos(dihedral), np.sin(dihedral)], axis=1)
-        self._corners = np.array(surface.root_m) + np.concatenate(
-            [np.zeros((1, 3)), np.cumsum(steps * self._lengths[:, None], axis=0)]
-        )
-        height = self._corners[:, 2] - self._corners[0, 2]
-        self._spans = height / height[-1] if vertical else self._corners[:, 1] / self._corners[-1, 1]
+        self._fractions = self.spans / self.spans[-1]
 
     def stations(self, strips: int, breaks: Sequence[float]) -> Array:
         """Edges (strips + 1,) of the strips along the length."""
-        inner = np.interp(np.asarray(breaks, dtype=np.float64), self._spans, self._ends)
-        parts = np.sort(np.concatenate([self._ends, inner]))
+        inner = np.interp(np.asarray(breaks, dtype=np.float64), self._fractions, self.ends)
+        parts = np.sort(np.concatenate([self.ends, inner]))
         parts = parts[np.concatenate([[True], np.diff(parts) > _ROUNDING])]
         lengths = np.diff(parts)
         if strips < len(lengths):
@@ -170,20 +160,17 @@ class _Outline:
 
     def span_fraction(self, stations: Array) -> Array:
         """Fraction of the semi-span at lengths `stations` (k,)."""
-        return np.interp(stations, self._ends, self._spans)
+        return np.interp(stations, self.ends, self._fractions)
 
-    def at(self, stations: Array) -> tuple[Array, Array, Array]:
-        """Leading edge (k, 3) [m], chord (k,) [m] and angle (k,) [rad] at lengths `stations` (k,)."""
-        leading = np.stack([np.interp(stations, self._ends, column) for column in self._corners.T], axis=1)
+    def angle(self, stations: Array) -> Array:
+        """Angle (k,) [rad] of the chord at lengths `stations` (k,): incidence and twist."""
         sections = self._surface.sections
-        chord = np.interp(stations, self._ends, [sections[0].chord_m[0], *(s.chord_m[1] for s in sections)])
         # a twist may jump where a chord may not
-        place = np.clip(np.searchsorted(self._ends, stations, side="right") - 1, 0, len(sections) - 1)
-        along = (stations - self._ends[place]) / self._lengths[place]
+        place = np.clip(np.searchsorted(self.ends, stations, side="right") - 1, 0, len(sections) - 1)
+        along = (stations - self.ends[place]) / np.diff(self.ends)[place]
         first = np.array([section.twist_deg[0] for section in sections])[place]
         last = np.array([section.twist_deg[1] for section in sections])[place]
-        angle = self._surface.incidence_deg + first + along * (last - first)
-        return leading, chord, np.radians(angle)
+        return np.radians(self._surface.incidence_deg + first + along * (last - first))
 
 
 def _chordwise_edges(count: int, hinge: float) -> Array:

@@ -50,14 +50,14 @@ def surface_masses(
     def density(length: Array) -> Array:
         return line.chord(length) ** 2
 
-    points, weights = _quadrature([b for b in line.breaks if b < end] + [end])
+    points, weights = _quadrature([b for b in line.ends if b < end] + [end])
     per_density = mass / float(weights @ density(points))
     masses = []
     for node, (low, high) in zip(nodes, _shares(stations, 0.0, line.end), strict=True):
         high = min(high, end)
         if high <= low:
             continue
-        points, weights = _quadrature([low, *(b for b in line.breaks if low < b < high), high])
+        points, weights = _quadrature([low, *(b for b in line.ends if low < b < high), high])
         pieces = per_density * weights * density(points)
         strip = float(pieces.sum())
         centres = line.at_chord_fraction(points, aircraft.mass.section_centre_of_gravity)

@@ -76,7 +76,7 @@ def stick_model(aircraft: Aircraft) -> StickModel:
     lines: dict[tuple[str, str], tuple[BeamElement, ...]] = {}
     engines = []
     parts = aircraft.mass
-    crank = float(wing.breaks[-2])
+    crank = float(wing.ends[-2])
     for side, sign in ((RIGHT, 1.0), (LEFT, -1.0)):
         left = sign < 0.0
         hung = wing.length_at(parts.engine.y_m)
