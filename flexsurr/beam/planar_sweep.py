@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 from numba import njit
 
-from flexsurr.beam.linear_solve import solve_positive_definite
 from flexsurr.beam.trigonometry import sine_cosine
+from flexsurr.simulation.linear_solvers import solve_positive_definite
 from flexsurr.simulation.rhs import FLOATING_POINT, Array, implements_rhs
 
 LANES = 4  # doubles in a 256-bit register

@@ -11,8 +11,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from flexsurr.beam.linear_solve import solve_positive_definite
 from flexsurr.beam.trigonometry import sine_cosine
+from flexsurr.simulation.linear_solvers import solve_positive_definite
 from flexsurr.simulation.rhs import FLOATING_POINT, Array, implements_rhs
 
 # What `sweep_axes` keeps of each element: the axis of ψ (the element before's z), y after ψ, the element's

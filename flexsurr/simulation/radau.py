@@ -12,7 +12,7 @@ from numba import njit
 from flexsurr.simulation.dimension import ORDERED
 from flexsurr.simulation.fixed_step import all_finite
 from flexsurr.simulation.jacobian import jacobian
-from flexsurr.simulation.linear_solver import factorise, solve
+from flexsurr.simulation.linear_solvers import factorise, solve
 from flexsurr.simulation.outcome import COMPLETED, NOT_FINITE, STEP_TOO_SMALL
 from flexsurr.simulation.rhs import rhs
 from flexsurr.simulation.step_control import first_step, smallest_step

@@ -6,10 +6,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from flexsurr.simulation.linear_solvers import solve_packed
 from flexsurr.simulation.rhs import Array, implements_rhs
 from flexsurr.surrogates.activations import ACTIVATIONS, ActivationFunction, slope, value
 from flexsurr.surrogates.layers import forward, offset
-from flexsurr.surrogates.packed import lower, pack, packed_size, solve_positive_definite, symmetric
+from flexsurr.surrogates.packed import lower, pack, packed_size, symmetric
 from flexsurr.surrogates.port_hamiltonian import PortHamiltonian, springs_and_dampers
 
 
@@ -197,7 +198,7 @@ def _network_port_hamiltonian(kernel, t, x, dx, work):
             work[matrix + e] = total
             e += offset(1)
         work[rates + i] = x[r + i]
-    solve_positive_definite(work, np.int64(matrix), np.int64(rates), np.int64(r))
+    solve_packed(work, np.int64(matrix), np.int64(rates), np.int64(r))
     for i in range(r):
         dx[i] = work[rates + i]
         work[turned + i] = 0.0

@@ -7,10 +7,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from flexsurr.simulation.linear_solvers import solve_packed
 from flexsurr.simulation.rhs import Array, implements_rhs
 from flexsurr.surrogates.layers import offset
 from flexsurr.surrogates.monomials import Exponents, differentiate, evaluate_monomials, factors
-from flexsurr.surrogates.packed import lower, solve_positive_definite, symmetric
+from flexsurr.surrogates.packed import lower, symmetric
 from flexsurr.surrogates.port_hamiltonian import PortHamiltonian, springs_and_dampers
 
 
@@ -144,7 +145,7 @@ def _polynomial_port_hamiltonian(kernel, t, x, dx, work):
         work[matrix + e] = total
     for i in range(r):
         work[rates + i] = x[r + i]
-    solve_positive_definite(work, np.int64(matrix), np.int64(rates), np.int64(r))
+    solve_packed(work, np.int64(matrix), np.int64(rates), np.int64(r))
     for i in range(r):
         dx[i] = work[rates + i]
     # the adjoint of ½ q̇ᵀ M q̇: by the monomials, then by the factors, then by q

@@ -8,7 +8,7 @@ from hypothesis.extra import numpy as arrays
 from scipy.integrate._ivp import dop853_coefficients as published
 
 from flexsurr.simulation import radau, unroll
-from flexsurr.simulation.linear_solver import factorise, solve
+from flexsurr.simulation.linear_solvers import factorise, solve
 from flexsurr.simulation.tableaus import DOP853, GAUSS_LEGENDRE_4, GAUSS_LEGENDRE_6, RK4
 
 
