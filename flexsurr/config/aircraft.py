@@ -4,7 +4,7 @@ Axes of the file: x aft from the nose, y to the right, z up. Every block says wh
 """
 
 import math
-from itertools import accumulate
+from itertools import accumulate, pairwise
 from pathlib import Path
 from typing import Annotated, Literal, Self
 
@@ -29,6 +29,7 @@ TWO_SIDED = ("wing", "horizontal_tail")
 # Parts must add up to the published mass to within this; they are given in whole kilograms.
 _MASS_TOLERANCE_KG = 0.5
 _SPAN_TOLERANCE_M = 0.01
+_SAME_STATION = 1e-9  # of the span
 
 
 class Published(Record):
@@ -229,6 +230,21 @@ class Aircraft(Record):
                 f"{self.published.mass_kg:.10g}"
             )
         return self
+
+    def parts_of_span(self, name: str) -> int:
+        """How many parts sections and control surfaces make of the span of a surface: its least strips."""
+        surface: Surface = getattr(self.surfaces, name)
+        vertical = name not in TWO_SIDED
+        tip = surface.section_ends(vertical)[-1]
+        root = 0.0 if vertical else surface.root_m[1] / tip
+        controls = (
+            self.control_surfaces.elevator,
+            self.control_surfaces.aileron,
+            self.control_surfaces.rudder,
+        )
+        flaps = [max(edge, root) for control in controls if control.surface == name for edge in control.span]
+        edges = sorted([root, *(end / tip for end in surface.section_ends(vertical)), *flaps])
+        return sum(after - before > _SAME_STATION for before, after in pairwise(edges))
 
 
 def load_aircraft(path: Path, shown: str | None = None) -> Aircraft:

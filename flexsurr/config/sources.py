@@ -4,9 +4,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from flexsurr.config.aircraft import Aircraft
+from flexsurr.config.aircraft import SURFACES, Aircraft
 from flexsurr.config.feature_limits import FeatureLimits
 from flexsurr.config.files import FilesStudy
+from flexsurr.config.flight import CONTROL_NAMES
 from flexsurr.config.load import check_load
 from flexsurr.config.sample_study import SampleStudy
 from flexsurr.config.structure import Structure
@@ -79,6 +80,16 @@ def _samples(files: StudyFiles) -> ResolvedSampleStudy:
     if all(space.architecture != "network" for space in sweeps[DEFAULT].spaces):
         problem = f"{study.sweeps[DEFAULT]!r} has no space of a network; one is needed to fly with"
         files.refuse(problem, "sweeps", DEFAULT)
+    for surface in SURFACES:
+        strips, least = getattr(study.dataset.panels, surface)[0], aircraft.parts_of_span(surface)
+        if strips < least:
+            problem = f"{strips} strips for {least} parts of the span; allowed: at least one each"
+            files.refuse(problem, "dataset", "panels", surface)
+    for control in CONTROL_NAMES:
+        least_deg, most_deg = study.flight.random_flights.least_deg, limits.deflection_deg(control)
+        if not least_deg < most_deg:
+            problem = f"{least_deg:g} is not allowed; allowed: below {most_deg:g}, the {control}'s limit"
+            files.refuse(problem, "flight", "random_flights", "least_deg")
     return ResolvedSampleStudy(files.name, study, aircraft, limits, sweeps)
 
 

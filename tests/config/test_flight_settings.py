@@ -39,6 +39,7 @@ BAD_VALUES = [
     ("aerodynamic_modes", [1, 2, 9], ["aerodynamic_modes", "mode 9", "1 to elastic_modes = 8"]),
     ("aerodynamic_modes", [1, 1], ["aerodynamic_modes", "at most once"]),
     ("random_flights.least_deg", -1.0, ["random_flights.least_deg", "-1.0", "greater than or equal to 0"]),
+    ("random_flights.least_deg", 90.0, ["random_flights.least_deg: 90 is not allowed", "'s limit"]),
     ("random_flights.mach", [0.6, 0.7], ["random_flights.mach", "unknown key"]),
     ("random_flights.of_each_doublet", 0, ["of_each_doublet", "0", "greater than or equal to 1"]),
     ("step_s", 0.003, ["duration_s: 5 ", "step_s: 0.003", "such as 5.001"]),
@@ -69,3 +70,12 @@ def test_a_mistake_is_one_line(root: Path, keys: str, value: object, words: list
     assert problem.startswith(f"{STUDY}: flight")
     for word in words:
         assert word in problem
+
+
+def test_a_lattice_has_a_strip_for_each_part_of_the_span(root: Path):
+    """Of the wing's three sections the aileron divides the outermost in three."""
+    content = yaml.safe_load((root / STUDY).read_text())
+    content.setdefault("dataset", {})["panels"] = {"wing": [4, 5]}
+    (root / STUDY).write_text(yaml.safe_dump(content))
+    with pytest.raises(ConfigurationError, match=r"dataset\.panels\.wing: 4 strips for 5 parts of the span"):
+        airliner(root)
