@@ -11,6 +11,7 @@ RECORDER = '#!/bin/sh\nprintf "%s\\n" "$@" >> "$(dirname "$0")/arguments"\n'
 
 
 def test_a_study_with_a_hyphen_in_folders_with_spaces(make_project):
+    """And with results behind a link."""
     project = make_project()
     project.root = project.root.rename(project.root.with_name("a project"))
     shutil.copy(
@@ -18,8 +19,10 @@ def test_a_study_with_a_hyphen_in_folders_with_spaces(make_project):
     )
     project.change("config/config.yaml", "studies", ["soft-beam"])
     project.change("config/config.yaml", "results", "my results")
+    (project.root / "elsewhere").mkdir()
+    (project.root / "my results").symlink_to("elsewhere")
     project.run_well("my results/evaluation/soft-beam/statics.parquet")
-    assert (project.root / "my results/evaluation/soft-beam/statics.parquet").is_file()
+    assert (project.root / "elsewhere/evaluation/soft-beam/statics.parquet").is_file()
 
 
 @pytest.mark.parametrize(

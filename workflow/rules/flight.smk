@@ -79,7 +79,7 @@ rule fly_randomly:
         f"{RESULTS}/logs/fly_randomly/{{study}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/fly_randomly/{{study}}.tsv"
-    threads: plan.settings.timing.cores or workflow.cores or 1
+    threads: TIMING_CORES
     resources:
         mem_mb=3000,
         runtime=240,

@@ -35,6 +35,9 @@ try:
 except ConfigurationError as error:
     raise WorkflowError(str(error)) from None
 
+# What a job that measures time keeps for itself: all cores, so that it runs alone. Where jobs go elsewhere,
+# nobody has said how many there are.
+TIMING_CORES = plan.settings.timing.cores or workflow.resource_settings.cores or 1
 RESULTS = plan.settings.results
 STUDIES = list(plan.settings.studies)
 
