@@ -32,6 +32,21 @@ _PREFIX = "flexsurr-kernels-"
 _outside: set[Path] = set()
 
 
+class NotCompiled(TypeError):
+    """Python has called what only machine code can run; the message says what is missing."""
+
+
+def not_compiled(what: str, function: str, kernel: object) -> NotCompiled:
+    """The error of `function`, which numba replaces by the equations (or `what` they are) of a kernel."""
+    if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
+        return NotCompiled(
+            "NUMBA_DISABLE_JIT is set, and compiled models and integrators need numba's compiler: unset it, "
+            "or step described or numpy models by SciPy's integrators"
+        )
+    name = type(kernel).__name__
+    return NotCompiled(f"no {what} is registered for {name}; call {function} from compiled code")
+
+
 def digest(*outside: Path, package: Path = PACKAGE) -> str:
     """Sixteen hex digits of the floors that hold kernels and of sources from outside the package."""
     sha = hashlib.sha256()

@@ -11,6 +11,7 @@ import numpy as np
 from numba import njit, types
 from numba.extending import overload
 
+from flexsurr.kernel_cache import not_compiled
 from flexsurr.simulation.dimension import ORDERED, states
 from flexsurr.simulation.outcome import COMPLETED, NOT_FINITE
 from flexsurr.simulation.rhs import Array
@@ -28,7 +29,7 @@ def advance(
 
     Callable from compiled code only.
     """
-    raise TypeError(f"no method is registered for {type(method).__name__}; call advance from compiled code")
+    raise not_compiled("method", "advance", method)
 
 
 def implements_advance(method_class: type) -> Callable[[Callable[..., int]], Callable[..., int]]:

@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit, types
 from numba.extending import overload
 
-from flexsurr.kernel_cache import check_belongs
+from flexsurr.kernel_cache import check_belongs, not_compiled
 from flexsurr.simulation.rhs import FLOATING_POINT, Array
 
 
@@ -22,7 +22,7 @@ def mapping(kernel: Any, u: Array, y: Array, work: Array) -> None:
 
     Callable from compiled code only; from Python call a `CompiledMapping` or `evaluate_mapping`.
     """
-    raise TypeError(f"no mapping is registered for {type(kernel).__name__}; call mapping from compiled code")
+    raise not_compiled("mapping", "mapping", kernel)
 
 
 def implements_mapping(

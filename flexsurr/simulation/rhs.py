@@ -16,7 +16,7 @@ from numba import njit, types
 from numba.extending import overload
 from numpy.typing import NDArray
 
-from flexsurr.kernel_cache import check_belongs
+from flexsurr.kernel_cache import check_belongs, not_compiled
 
 Array = NDArray[np.float64]
 
@@ -69,7 +69,7 @@ def rhs(kernel: Any, t: float, x: Array, dx: Array, work: Array) -> None:
 
     Callable from compiled code only; from Python call a model's `derivative` or `evaluate`.
     """
-    raise TypeError(f"no equations are registered for {type(kernel).__name__}; call rhs from compiled code")
+    raise not_compiled("right-hand side", "rhs", kernel)
 
 
 def implements_rhs(
