@@ -1,6 +1,5 @@
 """What the selected maps err by, output by output, and where the network's errors lie."""
 
-import json
 from pathlib import Path
 
 import pandas as pd
@@ -8,7 +7,7 @@ import pandas as pd
 from flexsurr.cli.command import Job, command
 from flexsurr.cli.flying import load_map
 from flexsurr.cli.frames import write_frame
-from flexsurr.storage import read_all_samples
+from flexsurr.storage import read_all_samples, read_json
 from flexsurr.training.coefficient_accuracy import accuracy as accuracy_of
 from flexsurr.training.coefficient_accuracy import held_out_errors
 from flexsurr.training.coefficient_data import coefficient_data
@@ -17,7 +16,7 @@ from flexsurr.training.coefficient_data import coefficient_data
 def main(job: Job, selection: Path, runs: Path, shards: list[Path], accuracy: Path, errors: Path) -> None:
     """Write the accuracy of each selected map, and the errors of the network on its held-out samples."""
     tables = []
-    for label, chosen in json.loads(selection.read_text(encoding="utf-8")).items():
+    for label, chosen in read_json(selection).items():
         name = chosen["variant"]
         read = job["samples"][name]
         samples = read_all_samples(

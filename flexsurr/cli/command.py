@@ -3,18 +3,21 @@
 import argparse
 import json
 import logging
+import os
 import signal
 import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from pickle import UnpicklingError
 from types import FrameType
 from typing import Any
 
 from flexsurr.config.errors import ConfigurationError
-from flexsurr.storage import StorageError
+from flexsurr.kernel_cache import NotCompiled
+from flexsurr.storage import DamagedFile, StorageError
 
 Job = Mapping[str, Any]
-EXPECTED: tuple[type[Exception], ...] = (StorageError, ConfigurationError)
+EXPECTED: tuple[type[Exception], ...] = (StorageError, ConfigurationError, NotCompiled)
 
 INTERRUPTED = 130
 TERMINATED = 143
@@ -28,7 +31,7 @@ def command(
     """Run `work(job, <file>, …)` as this process's command for the workflow, and end the process.
 
     `files` maps names of options to what they hold; where the text ends in "…" the option takes any number.
-    Ends as `personal` does, and logs with the time of day.
+    Ends as `personal` does, logs with the time of day, and says of a damaged file how it is made again.
     """
     logging.basicConfig(
         level=logging.INFO, stream=sys.stderr, format="%(asctime)s %(message)s", datefmt="%H:%M:%S"
@@ -46,7 +49,13 @@ def command(
                 help=text,
             )
 
-    personal(work, arguments, expected)
+    def working(**values: Any) -> None:
+        try:
+            work(**values)
+        except DamagedFile as error:
+            raise StorageError(f"{error}; delete it, and snakemake makes it again") from None
+
+    personal(working, arguments, expected)
 
 
 def personal(
@@ -56,9 +65,9 @@ def personal(
 ) -> None:
     """Run `work` with what `arguments` has the command line hold, as this process's command.
 
-    Errors of the types of `expected`, and those of storage and configuration, are one line and exit
-    code 1; any other leaves its traceback. SIGTERM ends the process as `sys.exit` does, so
-    that whatever is open is closed.
+    Errors of the types of `expected`, those of storage and configuration, and what the machine refuses (a
+    full disk, a file that may not be read, memory) are one line and exit code 1; any other leaves its
+    traceback. SIGTERM ends the process as `sys.exit` does, so that whatever is open is closed.
     """
     signal.signal(signal.SIGTERM, _terminate)
     # A shell that starts something in the background has it ignore SIGINT; Ctrl-C must reach us all the same.
@@ -71,6 +80,16 @@ def personal(
     except (*EXPECTED, *expected) as error:
         print(f"{_name()}: {error}", file=sys.stderr)
         sys.exit(1)
+    except (OSError, MemoryError) as error:
+        print(f"{_name()}: {_refusal(error)}", file=sys.stderr)
+        sys.exit(1)
+    except (UnpicklingError, EOFError):
+        # Nothing of ours is pickled; numba keeps its machine code so.
+        folder = os.environ.get("NUMBA_CACHE_DIR", "NUMBA_CACHE_DIR")
+        print(
+            f"{_name()}: {folder}: damaged machine code; delete it, and it is compiled anew", file=sys.stderr
+        )
+        sys.exit(1)
     except KeyboardInterrupt:
         print(f"{_name()}: interrupted", file=sys.stderr)
         sys.exit(INTERRUPTED)
@@ -80,6 +99,13 @@ def _name() -> str:
     """As the shell has it: `flexsurr learn-load` for the module flexsurr.cli.learn_load."""
     spec = sys.modules["__main__"].__spec__
     return f"flexsurr {spec.name.rpartition('.')[2].replace('_', '-')}" if spec else "command"
+
+
+def _refusal(error: OSError | MemoryError) -> str:
+    """What the machine has refused, on one line."""
+    if isinstance(error, OSError) and error.strerror:
+        return f"{error.filename}: {error.strerror}" if error.filename else error.strerror
+    return " ".join(str(error).split()) or "out of memory"
 
 
 def _job(text: str) -> Job:

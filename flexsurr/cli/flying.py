@@ -1,6 +1,5 @@
 """What the commands that fly the airliner share: its model, the lattice's forms, and the chosen networks."""
 
-import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -12,7 +11,7 @@ from flexsurr.config.flight import FlightSettings
 from flexsurr.config.panels import PanelCounts
 from flexsurr.evaluation.airliner_models import Airliner, airliner, lattices
 from flexsurr.simulation.mapping import CompiledMapping
-from flexsurr.storage import StorageError
+from flexsurr.storage import StorageError, read_json
 from flexsurr.surrogates.coefficient_network import CoefficientNetwork, load_coefficient_network
 from flexsurr.surrogates.coefficient_polynomial import CoefficientPolynomial, load_coefficient_polynomial
 
@@ -48,7 +47,7 @@ def selected_networks(selection: Path, runs: Path) -> dict[str, CoefficientNetwo
 
     Raises StorageError where it names no "network".
     """
-    chosen = json.loads(selection.read_text(encoding="utf-8"))
+    chosen = read_json(selection)
     if "network" not in chosen:
         raise StorageError(f"{selection}: names no network")
     labels = sorted(chosen, key=lambda label: label != "network")

@@ -1,6 +1,5 @@
 """What a figure or a table reads: the files of its study, as its function's arguments, and its caption."""
 
-import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -9,6 +8,7 @@ import pandas as pd
 
 from flexsurr.cli.command import Job
 from flexsurr.cli.frames import read_frame
+from flexsurr.cli.runs import read_run
 from flexsurr.config.structure import Structure
 
 
@@ -30,7 +30,7 @@ def _read(read: str, job: Job, files: Sequence[Path]) -> Any:
     if read == "structure":
         return Structure.model_validate(job["structure"])
     if read in ("metrics", "relatives"):
-        return pd.DataFrame([json.loads(path.read_text(encoding="utf-8")) for path in files])
+        return pd.DataFrame([read_run(path) for path in files])
     if read == "history":
         frames = [read_frame(path).assign(run_id=path.parent.name) for path in files]
     else:

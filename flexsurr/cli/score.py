@@ -1,6 +1,5 @@
 """Score one run: its field on held-out samples, and long responses that no training has seen."""
 
-import json
 import logging
 from collections.abc import Callable
 from pathlib import Path
@@ -8,6 +7,7 @@ from typing import Any
 
 from flexsurr.beam import EquilibriumNotFound, reduce
 from flexsurr.cli.command import Job, command
+from flexsurr.cli.runs import read_run
 from flexsurr.config.files import FilesStudy
 from flexsurr.config.part import part_of
 from flexsurr.config.structure import Structure
@@ -32,10 +32,10 @@ def main(job: Job, fit: Path, weights: Path, best: Path, manifest: list[Path], o
     Where the run keeps its last weights, those that validated best are scored too, as `best_…`. A map has no
     `manifest`: what training says of it is all.
     """
+    metrics = read_run(fit)
     if not manifest:
-        write_json(output, json.loads(fit.read_text(encoding="utf-8")))
+        write_json(output, metrics)
         return
-    metrics: dict[str, Any] = json.loads(fit.read_text(encoding="utf-8"))
     metrics |= _setting(job)
     if metrics["status"] == "finished":
         surrogate = load(weights)

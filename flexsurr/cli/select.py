@@ -1,10 +1,10 @@
 """Choose the surrogates of a study that are evaluated, and end its sweeps."""
 
-import json
 from pathlib import Path
 from typing import Any
 
 from flexsurr.cli.command import Job, command
+from flexsurr.cli.runs import read_run
 from flexsurr.storage import StorageError, write_json
 from flexsurr.training import select
 from flexsurr.training.selection import select_maps
@@ -24,7 +24,7 @@ def main(job: Job, runs: Path, store: Path, output: Path) -> None:
     metrics: dict[str, dict[str, Any]] = {}
     for sweep, keys in job["sweeps"].items():
         for key in keys:
-            metrics[key] = json.loads((runs / key / "metrics.json").read_text(encoding="utf-8"))
+            metrics[key] = read_run(runs / key / "metrics.json")
         records = [metrics[key] for key in keys]
         if job.get("maps"):
             best = select_maps(records)

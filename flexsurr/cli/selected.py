@@ -1,9 +1,9 @@
 """The surrogates of a selection."""
 
-import json
 from pathlib import Path
 from typing import Any
 
+from flexsurr.cli.runs import read_selection
 from flexsurr.surrogates import load
 from flexsurr.training.selection import ERROR
 
@@ -22,5 +22,5 @@ def most_accurate(selection: Path, variant: str) -> str | None:
 
 def selected_runs(selection: Path, variant: str) -> dict[str, dict[str, Any]]:
     """The metrics of the run of each name; the Pareto sets, which are lists, are left out."""
-    entries = json.loads(selection.read_text(encoding="utf-8")).get(variant, {})
+    entries = read_selection(selection).get(variant, {})
     return {name: entry for name, entry in entries.items() if isinstance(entry, dict)}

@@ -27,15 +27,20 @@ def main(job: Job, output: Path) -> None:
     numbers, t, x, dx, failures = [], [], [], [], []
     for number, x0 in zip(range(first, first + count), states, strict=True):
         trajectory = simulate(model, times, x0, dataset.integrator)
-        if not trajectory.completed:
-            failures.append(f"trajectory {number}: {trajectory.reason} at {trajectory.end_time_s:g} s")
-            log.warning(failures[-1])
-        numbers.append(np.full(len(trajectory.t), number))
-        t.append(trajectory.t)
-        x.append(trajectory.x)
-        dx.append(
-            [model.derivative(time, state) for time, state in zip(trajectory.t, trajectory.x, strict=True)]
+        rates = np.array(
+            [model.derivative(*sample) for sample in zip(trajectory.t, trajectory.x, strict=True)]
         )
+        kept = int(np.isfinite(rates).all(axis=1).cumprod().sum())
+        if kept == 0:
+            raise ArithmeticError(f"trajectory {number}: its initial state is too large to have a rate")
+        if kept < len(rates) or not trajectory.completed:
+            reason = trajectory.reason if kept == len(rates) else "the rates left the finite numbers"
+            failures.append(f"trajectory {number}: {reason} at {trajectory.t[kept - 1]:g} s")
+            log.warning(failures[-1])
+        numbers.append(np.full(kept, number))
+        t.append(trajectory.t[:kept])
+        x.append(trajectory.x[:kept])
+        dx.append(rates[:kept])
     shard = Shard(
         trajectory=np.concatenate(numbers),
         t=np.concatenate(t),
@@ -58,4 +63,4 @@ def main(job: Job, output: Path) -> None:
 
 
 if __name__ == "__main__":
-    command(main, {"output": "the shard"}, expected=(EquilibriumNotFound,))
+    command(main, {"output": "the shard"}, expected=(EquilibriumNotFound, ArithmeticError))

@@ -13,11 +13,12 @@ import numpy as np
 from flexsurr.beam import EquilibriumNotFound, ModalBasis, reduce
 from flexsurr.cli.alone import alone_in
 from flexsurr.cli.command import Job, command
+from flexsurr.cli.frames import write_frame
 from flexsurr.config.part import part_of
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Study
 from flexsurr.config.trial import Map, MapNetwork, Trial, configurations_of, settings_of, trial_of
-from flexsurr.storage import read_all_samples, read_manifest, replacing, write_json
+from flexsurr.storage import read_all_samples, read_manifest, write_json
 from flexsurr.surrogates import Surrogate
 from flexsurr.surrogates.coefficient_network import save_coefficient_network
 from flexsurr.surrogates.coefficient_polynomial import save_coefficient_polynomial
@@ -112,8 +113,7 @@ def _train(job: Job, data: list[Path], store: Path, folder: Path) -> None:
         page.status, page.reason = result.status, result.reason
         task.save(result.surrogate, folder / "weights.npz")
         task.save(result.best, folder / "best.npz")
-        with replacing(folder / "history.parquet") as beside:
-            result.history.to_parquet(beside, index=False)
+        write_frame(folder / "history.parquet", result.history)
         write_json(folder / "fit.json", figures)
         files = [folder / name for name in ("parameters.json", "weights.npz", "history.parquet")]
         page.keep(figures, {"dataset_sha256": task.sha256}, files)

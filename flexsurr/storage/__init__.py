@@ -1,7 +1,7 @@
 """Datasets on disk: Parquet shards and the manifest that vouches for them."""
 
-from flexsurr.storage.atomic import replacing, write_json
-from flexsurr.storage.errors import StorageError
+from flexsurr.storage.atomic import read_bytes, read_json, replacing, write_json
+from flexsurr.storage.errors import DamagedFile, StorageError
 from flexsurr.storage.manifest import (
     Manifest,
     ShardEntry,
@@ -23,6 +23,7 @@ from flexsurr.storage.samples import (
 from flexsurr.storage.scales import Scales
 
 __all__ = [
+    "DamagedFile",
     "Manifest",
     "SampleMetadata",
     "Samples",
@@ -34,6 +35,8 @@ __all__ = [
     "StorageError",
     "build_manifest",
     "read_all_samples",
+    "read_bytes",
+    "read_json",
     "read_manifest",
     "read_samples",
     "read_shard",

@@ -13,8 +13,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from flexsurr.storage.atomic import write_json
-from flexsurr.storage.errors import StorageError
+from flexsurr.storage.atomic import read_json, write_json
+from flexsurr.storage.errors import DamagedFile, StorageError
 from flexsurr.storage.moments import Moments
 from flexsurr.storage.parquet import FORMAT_VERSION, Shard, ShardMetadata, read_shard
 from flexsurr.storage.scales import Scales
@@ -137,7 +137,7 @@ def build_manifest(
         train = validation = tuple(range(trajectories))
     else:
         train, validation = split_trajectories(trajectories, training_fraction, seed)
-    problems, entries, moments = [], [], None
+    damaged, entries, moments = [], [], None
     failures: list[str] = []
     states: ShardMetadata | None = None
     for path in sorted(paths, key=lambda path: path.name):
@@ -151,9 +151,9 @@ def build_manifest(
                 states.state_names,
                 states.state_units,
             ):
-                raise StorageError(f"{path}: has other states or units than the shards before it")
-        except StorageError as error:
-            problems.append(str(error))
+                raise DamagedFile(f"{path}: has other states or units than the shards before it")
+        except DamagedFile as error:
+            damaged.append(str(error))
             continue
         states = shard.metadata
         failures += shard.metadata.failures
@@ -161,8 +161,9 @@ def build_manifest(
         rows = _training_rows(shard, split_by, train, training_fraction, seed)
         block = Moments.of(np.hstack([shard.x, shard.dx])[rows])
         moments = block if moments is None else moments.joined(block)
-    if not problems:
-        problems = _check_complete(entries, trajectories)
+    if damaged:
+        raise DamagedFile("\n".join(damaged))
+    problems = _check_complete(entries, trajectories)
     if problems or states is None or moments is None:
         raise StorageError("\n".join(problems) or "a dataset without shards")
     names = [*states.state_names, *(f"the rate of {name}" for name in states.state_names)]
@@ -198,24 +199,17 @@ def write_manifest(path: Path, manifest: Manifest) -> None:
 
 def read_manifest(path: Path) -> Manifest:
     """The manifest at `path`. Raises StorageError naming the file if it is missing or not a manifest."""
+    values = read_json(path, ["format_version"])
+    if (version := values["format_version"]) != FORMAT_VERSION:
+        raise DamagedFile(f"{path}: has format version {version}; this program reads {FORMAT_VERSION}")
     try:
-        values = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise StorageError(f"{path}: cannot be read: {error.strerror}") from None
-    except ValueError:
-        raise StorageError(f"{path}: damaged or truncated, not JSON") from None
-    try:
-        if values["format_version"] != FORMAT_VERSION:
-            raise StorageError(
-                f"{path}: has format version {values['format_version']}; this program reads {FORMAT_VERSION}"
-            )
         for key in ("state_names", "state_units", "train", "validation", "failures"):
             values[key] = tuple(values[key])
         values["shards"] = tuple(ShardEntry(**entry) for entry in values["shards"])
         values["scales"] = Scales(**{key: tuple(numbers) for key, numbers in values["scales"].items()})
         return Manifest(folder=path.parent, **values)
     except (TypeError, KeyError, AttributeError):
-        raise StorageError(f"{path}: cannot be understood as a manifest") from None
+        raise DamagedFile(f"{path}: cannot be understood as a manifest") from None
 
 
 def read_shards(manifest: Manifest) -> Iterator[Shard]:
@@ -256,7 +250,7 @@ def _check_belongs(path: Path, found: ShardMetadata, expected: ShardMetadata) ->
     got, wanted = asdict(found), asdict(expected)
     differences = [f"{key} {got[key]!r} instead of {wanted[key]!r}" for key in got if got[key] != wanted[key]]
     if differences:
-        raise StorageError(f"{path}: belongs to another dataset: {', '.join(differences)}")
+        raise DamagedFile(f"{path}: belongs to another dataset: {', '.join(differences)}")
 
 
 def _check_complete(entries: Sequence[ShardEntry], trajectories: int) -> list[str]:

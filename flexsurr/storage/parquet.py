@@ -16,9 +16,9 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
-from flexsurr.storage.arrow import read_table
-from flexsurr.storage.atomic import replacing
-from flexsurr.storage.errors import StorageError
+from flexsurr.storage.arrow import own_table
+from flexsurr.storage.atomic import read_bytes, replacing
+from flexsurr.storage.errors import DamagedFile
 
 FORMAT_VERSION = 1
 METADATA_KEY = b"flexsurr"
@@ -73,21 +73,14 @@ def read_shard(path: Path, sha256: str | None = None) -> Shard:
     Raises StorageError naming the file if it is missing, damaged, truncated, no shard of this format,
     or (where `sha256` is given) another file than the one that was recorded.
     """
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise StorageError(f"{path}: cannot be read: {error.strerror}") from None
+    content = read_bytes(path)
     if sha256 is not None and hashlib.sha256(content).hexdigest() != sha256:
-        raise StorageError(f"{path}: is not the file that was recorded (its SHA-256 differs)")
-    try:
-        table = read_table(content)
-    except (pa.ArrowException, OSError) as error:
-        reason = str(error).splitlines()[0]
-        raise StorageError(f"{path}: damaged or truncated, not a readable Parquet file: {reason}") from None
+        raise DamagedFile(f"{path}: is not the file that was recorded (its SHA-256 differs)")
+    table = own_table(path, content)
     metadata = _read_metadata(path, table)
     expected = _column_names(metadata.state_names)
     if table.column_names != expected:
-        raise StorageError(f"{path}: has the columns {table.column_names}; expected {expected}")
+        raise DamagedFile(f"{path}: has the columns {table.column_names}; expected {expected}")
     columns = {name: table.column(name).to_numpy() for name in expected}
     dimension = len(metadata.state_names)
     shard = Shard(
@@ -100,7 +93,7 @@ def read_shard(path: Path, sha256: str | None = None) -> Shard:
     try:
         _check_contents(shard)
     except ValueError as error:
-        raise StorageError(f"{path}: {error}") from None
+        raise DamagedFile(f"{path}: {error}") from None
     return shard
 
 
@@ -111,17 +104,17 @@ def _column_names(state_names: Sequence[str]) -> list[str]:
 def _read_metadata(path: Path, table: pa.Table) -> ShardMetadata:
     raw = (table.schema.metadata or {}).get(METADATA_KEY)
     if raw is None:
-        raise StorageError(f"{path}: a foreign Parquet file, without the metadata of a shard")
+        raise DamagedFile(f"{path}: a foreign Parquet file, without the metadata of a shard")
     try:
         values: dict[str, Any] = json.loads(raw)
         if values.get("format_version") != FORMAT_VERSION:
             version = values.get("format_version")
-            raise StorageError(f"{path}: has format version {version}; this program reads {FORMAT_VERSION}")
+            raise DamagedFile(f"{path}: has format version {version}; this program reads {FORMAT_VERSION}")
         for key in ("state_names", "state_units", "failures"):
             values[key] = tuple(values[key])
         return ShardMetadata(**values)
     except (ValueError, TypeError, KeyError, AttributeError):
-        raise StorageError(f"{path}: its metadata cannot be understood") from None
+        raise DamagedFile(f"{path}: its metadata cannot be understood") from None
 
 
 def _check_contents(shard: Shard) -> None:

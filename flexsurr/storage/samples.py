@@ -14,8 +14,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
-from flexsurr.storage.arrow import read_table
-from flexsurr.storage.atomic import replacing
+from flexsurr.storage.arrow import own_table
+from flexsurr.storage.atomic import read_bytes, replacing
 from flexsurr.storage.errors import StorageError
 
 FORMAT = "flexsurr samples 1"
@@ -72,15 +72,7 @@ def write_samples(path: Path, samples: Samples) -> None:
 
 def read_samples(path: Path) -> Samples:
     """The shard at `path`. Raises StorageError naming a file that is missing, damaged or foreign."""
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise StorageError(f"{path}: cannot be read: {error.strerror}") from None
-    try:
-        table = read_table(content)
-    except (pa.ArrowException, OSError) as error:
-        reason = str(error).splitlines()[0]
-        raise StorageError(f"{path}: damaged or truncated, not a readable Parquet file: {reason}") from None
+    table = own_table(path, read_bytes(path))
     metadata = _metadata(path, table)
     names = _columns(metadata)
     if table.column_names != names:

@@ -8,12 +8,12 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from flexsurr.storage import replacing
+from flexsurr.storage import DamagedFile, replacing
 
 Kept = TypeVar("Kept")
 
 
-class SurrogateFileError(Exception):
+class SurrogateFileError(DamagedFile):
     """A file that cannot be read as a surrogate; the message names it."""
 
 
@@ -38,7 +38,7 @@ def read_archive(
             arrays = dict(file)
     except FileNotFoundError:
         raise
-    except (OSError, EOFError, ValueError, TypeError, zipfile.BadZipFile) as error:
+    except (OSError, EOFError, ValueError, TypeError, RuntimeError, zipfile.BadZipFile) as error:
         raise SurrogateFileError(f"{path}: not a readable .npz file ({error})") from None
     try:
         header = json.loads(str(arrays.pop("header")))

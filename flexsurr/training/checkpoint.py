@@ -25,7 +25,7 @@ def read_checkpoint(folder: Path, belongs_to: dict[str, Any]) -> dict[str, dict[
     try:
         with (folder / NAME).open("rb") as content, np.load(content, allow_pickle=False) as file:
             arrays = dict(file)
-    except (OSError, EOFError, ValueError, zipfile.BadZipFile):
+    except (OSError, EOFError, ValueError, TypeError, RuntimeError, zipfile.BadZipFile):
         return None
     if str(arrays.pop("belongs_to", "")) != _canonical(belongs_to):
         return None

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from flexsurr.storage import write_json
+from flexsurr.storage import StorageError, read_json, write_json
 
 DIGITS = 10
 
@@ -22,8 +22,12 @@ def job_file(folder: Path, name: str, job: Mapping[str, Any]) -> Path:
 
 
 def write_job(folder: Path, name: str, job: Mapping[str, Any]) -> Path:
-    """`job_file`, written if it is not there."""
+    """`job_file`, written if it is not there whole."""
     path = job_file(folder, name, job)
-    if not path.is_file():
+    try:
+        is_there = read_json(path) == json.loads(json.dumps(job))
+    except StorageError:
+        is_there = False
+    if not is_there:
         write_json(path, job)
     return path

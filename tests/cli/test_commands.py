@@ -18,6 +18,14 @@ from flexsurr.workflow.plan import SIMULATORS, Plan
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 PLAN = Plan(load(REPOSITORY, ["config/config.yaml", "config/presets/quick.yaml"]))
+TROUBLE = [
+    ("OSError(28, 'No space left on device', 'weights.npz')", "weights.npz: No space left on device"),
+    ("OSError(5, 'Input/output error')", "Input/output error"),
+    ("PermissionError(13, 'Permission denied', 'results')", "results: Permission denied"),
+    ("MemoryError('Unable to allocate 8 TiB')", "Unable to allocate 8 TiB"),
+    ("MemoryError()", "out of memory"),
+    ("EOFError('Ran out of input')", "/kept/here: damaged machine code; delete it, and it is compiled anew"),
+]
 SLEEPER = """
 import time
 from flexsurr.cli.command import command
@@ -74,6 +82,28 @@ def test_what_is_not_to_be_expected_leaves_its_traceback(tmp_path):
     assert done.returncode == 1
     assert "Traceback" in done.stderr
     assert "KeyError" in done.stderr
+
+
+@pytest.mark.parametrize("integrator", ["dop853_fixed", "scipy_radau"])
+def test_without_numbas_compiler_a_line_says_so(tmp_path, monkeypatch, integrator):
+    monkeypatch.setenv("NUMBA_DISABLE_JIT", "1")
+    values = PLAN.simulate("cantilever", "hamiltonian", 0)
+    values["part"]["dataset"]["integrator"]["method"] = integrator
+    job = write_job(tmp_path, "simulate", values)
+    done = run("simulate", "--job", str(job), "--output", str(tmp_path / "shard-0000.parquet"))
+    assert done.returncode == 1
+    assert "Traceback" not in done.stderr
+    assert done.stderr.splitlines()[-1].startswith("flexsurr simulate: NUMBA_DISABLE_JIT is set")
+
+
+@pytest.mark.parametrize(("trouble", "said"), TROUBLE)
+def test_what_the_machine_refuses_is_one_line(tmp_path, monkeypatch, trouble, said):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", "/kept/here")
+    code = f"from flexsurr.cli.command import command\ndef main(job): raise {trouble}\ncommand(main, {{}})"
+    job = write_job(tmp_path, "refused", {})
+    words = [sys.executable, "-c", code, "--job", str(job)]
+    done = subprocess.run(words, cwd=REPOSITORY, capture_output=True, text=True, timeout=120)
+    assert (done.returncode, done.stderr) == (1, f"command: {said}\n")
 
 
 @pytest.mark.parametrize("content", ["{", "[]", None])
