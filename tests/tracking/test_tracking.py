@@ -188,6 +188,31 @@ def test_artefacts_are_found_and_kept_where_the_folder_has_moved_to(made, tmp_pa
         assert [file.path for file in client.list_artifacts(run.info.run_id)] == ["weights.npz"]
 
 
+def test_a_database_that_may_only_be_read_is_a_warning(made, tmp_path, caplog):
+    uri = copied(made, tmp_path / "mlflow")
+    refuse = "BEGIN SELECT RAISE(ABORT, 'attempt to write a readonly database'); END"
+    with closing(sqlite3.connect(database(tmp_path / "mlflow"))) as connection, connection:
+        for event in ("INSERT", "UPDATE"):
+            connection.execute(f"CREATE TRIGGER no_{event} BEFORE {event} ON runs {refuse}")
+    store = Store(uri, made.experiments, made.parents)
+    with caplog.at_level(logging.WARNING), tracked(store, "cantilever", "hnn-11", {}) as trial:
+        trial.epoch(0, 1.0, 1.0)
+    end_sweep(store, "cantilever", {})
+    assert "readonly database" in caplog.text
+    assert "results are made without it" in caplog.text
+
+
+def test_a_locked_database_is_a_warning(made, tmp_path, caplog):
+    uri = copied(made, tmp_path / "mlflow")
+    store = Store(uri, made.experiments, made.parents)
+    with closing(sqlite3.connect(database(tmp_path / "mlflow"), isolation_level=None)) as connection:
+        connection.execute("BEGIN EXCLUSIVE")
+        with caplog.at_level(logging.WARNING), tracked(store, "cantilever", "hnn-12", {}) as trial:
+            trial.epoch(0, 1.0, 1.0)
+        connection.execute("ROLLBACK")
+    assert "results are made without it" in caplog.text
+
+
 def test_a_store_of_another_schema_is_one_warning(made, tmp_path, caplog):
     uri = copied(made, tmp_path / "mlflow")
     with closing(sqlite3.connect(database(tmp_path / "mlflow"))) as connection, connection:

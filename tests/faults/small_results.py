@@ -1,0 +1,66 @@
+"""Results of two trainings made by the commands themselves."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from flexsurr.cli import manifest, score, select, simulate, statics, tabulate, train
+from flexsurr.config.settings import load
+from flexsurr.workflow.job_files import write_job
+from flexsurr.workflow.plan import Plan
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+PLAN = Plan(load(REPOSITORY, ["config/config.yaml", "config/presets/quick.yaml"]))
+STUDY, VARIANT = "cantilever", "hamiltonian"
+RUNS = [key for key in PLAN.runs_of(STUDY) if PLAN.runs[key].variant == VARIANT]
+RUN, OTHER = (next(key for key in RUNS if key.startswith(kind)) for kind in ("polynomial", "hnn"))
+
+
+@dataclass(frozen=True)
+class Results:
+    """A folder of results and the commands that read them."""
+
+    root: Path
+
+    @property
+    def dataset(self) -> Path:
+        return self.root / "datasets" / STUDY / VARIANT
+
+    @property
+    def run(self) -> Path:
+        return self.root / "runs" / RUN
+
+    def job(self, name: str, *keys: str) -> dict:
+        job = getattr(PLAN, name)(*keys)
+        write_job(self.root / "jobs", name, job)
+        return job
+
+    def simulate(self, shard: int, path: Path | None = None) -> None:
+        path = path or self.dataset / f"shard-{shard:04d}.parquet"
+        simulate.main(self.job("simulate", STUDY, VARIANT, shard), path)
+
+    def manifest(self, path: Path | None = None) -> None:
+        job = self.job("manifest", STUDY, VARIANT)
+        manifest.main(job, self.dataset, path or self.dataset / "manifest.json")
+
+    def train(self, key: str = RUN) -> None:
+        store = self.root / "mlflow/store.json"  # there is none: the page is tested elsewhere
+        train.main(self.job("train", key), [self.dataset / "manifest.json"], store, self.root / "runs" / key)
+
+    def score(self, key: str = RUN) -> None:
+        run = self.root / "runs" / key
+        files = [run / "fit.json", run / "weights.npz", run / "best.npz"]
+        score.main(self.job("score", key), *files, [self.dataset / "manifest.json"], run / "metrics.json")
+
+    def select(self) -> None:
+        job = {"study": STUDY, "sweeps": {"default": [RUN, OTHER]}}
+        output = self.root / "selected" / f"{STUDY}.json"
+        select.main(job, self.root / "runs", self.root / "mlflow/store.json", output)
+
+    def statics(self) -> None:
+        folder = self.root / "evaluation" / STUDY
+        statics.main(self.job("statics", STUDY), folder / "statics.parquet", folder / "frequencies.parquet")
+
+    def tabulate(self, table: str) -> None:
+        caption = REPOSITORY / "workflow/report" / f"{table}.rst"
+        output = self.root / "tables" / STUDY / f"{table}.html"
+        tabulate.main(self.job("tabulate", STUDY, table), self.root, caption, output)

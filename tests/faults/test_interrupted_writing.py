@@ -1,0 +1,77 @@
+"""A process killed, or a disk that fills, while a file is written: it is there whole or not at all."""
+
+import multiprocessing
+import os
+import resource
+import signal
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from small_results import OTHER, Results
+
+from flexsurr.cli.frames import write_frame
+from flexsurr.storage import write_json
+from flexsurr.surrogates import load, save
+from flexsurr.training.checkpoint import NAME, write_checkpoint
+
+LARGE = np.random.default_rng(0).normal(size=4096)
+FITS = 512  # bytes, and every file here is larger
+
+
+def weights(results: Results, path: Path) -> None:
+    save(load(results.root / "runs" / OTHER / "weights.npz"), path)
+
+
+WRITERS: dict[str, tuple[str, Callable[[Results, Path], None]]] = {
+    "shard": ("shard-0000.parquet", lambda results, path: results.simulate(0, path)),
+    "manifest": ("manifest.json", Results.manifest),
+    "table": ("cost.parquet", lambda results, path: write_frame(path, pd.DataFrame({"x": LARGE}))),
+    "keys": ("metrics.json", lambda results, path: write_json(path, {"x": LARGE.tolist()})),
+    "weights": ("weights.npz", weights),
+    "checkpoint": (NAME, lambda results, path: write_checkpoint(path.parent, {}, state={"x": LARGE})),
+}
+
+
+@pytest.mark.parametrize("kind", WRITERS)
+@pytest.mark.parametrize("before", [None, b"what was there before"])
+def test_a_full_disk_leaves_what_was_there(whole, tmp_path, kind, before):
+    """No file may grow beyond a few bytes, as on a disk that is full; the next try, with room, is well."""
+    name, write = WRITERS[kind]
+    path = tmp_path / name
+    if before:
+        path.write_bytes(before)
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (FITS, hard))
+    try:
+        with pytest.raises(OSError, match="File too large"):
+            write(whole, path)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert (path.read_bytes() if path.exists() else None) == before
+    assert [each.name for each in tmp_path.iterdir() if each.name != name] == []
+    write(whole, path)
+    assert path.stat().st_size > FITS
+
+
+def _killed(write: Callable[[Results, Path], None], results: Results, path: Path) -> None:
+    """In a process of its own, which is killed when it moves the file to its place."""
+    os.replace = lambda beside, place: os.kill(os.getpid(), signal.SIGKILL)
+    write(results, path)
+
+
+@pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")  # of Python 3.12: nothing here holds a lock
+@pytest.mark.parametrize("kind", WRITERS)
+def test_a_kill_leaves_nothing_that_looks_whole(whole, tmp_path, kind):
+    """Killed at the last moment, with everything written beside; the next try uses that up."""
+    name, write = WRITERS[kind]
+    path = tmp_path / name
+    process = multiprocessing.get_context("fork").Process(target=_killed, args=(write, whole, path))
+    process.start()
+    process.join(60)
+    assert process.exitcode == -signal.SIGKILL
+    assert not path.exists()
+    write(whole, path)
+    assert [each.name for each in tmp_path.iterdir()] == [name]
