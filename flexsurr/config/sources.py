@@ -1,7 +1,7 @@
 """The sources a study's data come from: for each, what its file holds, and how what it names is read."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from flexsurr.config.aircraft import SURFACES, Aircraft
@@ -9,6 +9,7 @@ from flexsurr.config.feature_limits import FeatureLimits
 from flexsurr.config.files import FilesStudy
 from flexsurr.config.flight import CONTROL_NAMES
 from flexsurr.config.load import check_load
+from flexsurr.config.own_network import own_network
 from flexsurr.config.sample_study import SampleStudy
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import DEFAULT, Study
@@ -18,13 +19,17 @@ from flexsurr.config.sweep import FieldSweep, MapSweep, Sweep
 
 @dataclass(frozen=True)
 class ResolvedStudy:
-    """A study of trajectories with everything its file refers to."""
+    """A study of trajectories with everything its file refers to.
+
+    `own_networks` has the hash of the file of each architecture of the user's own.
+    """
 
     name: str
     study: Study
     structure: Structure
     sweeps: Mapping[str, Sweep]
     frequencies_also_of: tuple[Structure, ...] = ()
+    own_networks: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -45,6 +50,7 @@ class ResolvedFiles:
     name: str
     study: FilesStudy
     sweeps: Mapping[str, Sweep]
+    own_networks: Mapping[str, str]
     root: Path
 
 
@@ -55,8 +61,7 @@ def _trajectories(files: StudyFiles) -> ResolvedStudy:
     study = files.record(Study)
     structure = files.named(Structure, study.structure, "structure")
     others = [files.named(Structure, path, "frequencies_also_of") for path in study.frequencies_also_of]
-    sweeps = {name: files.named(FieldSweep, path, "sweeps", name) for name, path in study.sweeps.items()}
-    files.check()
+    sweeps, own_networks = _field_sweeps(files, study.sweeps)
     modes, most = study.reduction.modes, structure.coordinates
     if modes > most:
         files.refuse(
@@ -68,7 +73,7 @@ def _trajectories(files: StudyFiles) -> ResolvedStudy:
         check_load(study.evaluation.load, structure)
     except ValueError as error:
         files.refuse(str(error), "evaluation", "load")
-    return ResolvedStudy(files.name, study, structure, sweeps, tuple(others))
+    return ResolvedStudy(files.name, study, structure, sweeps, tuple(others), own_networks)
 
 
 def _samples(files: StudyFiles) -> ResolvedSampleStudy:
@@ -95,9 +100,26 @@ def _samples(files: StudyFiles) -> ResolvedSampleStudy:
 
 def _files(files: StudyFiles) -> ResolvedFiles:
     study = files.record(FilesStudy)
-    sweeps = {name: files.named(FieldSweep, path, "sweeps", name) for name, path in study.sweeps.items()}
+    return ResolvedFiles(files.name, study, *_field_sweeps(files, study.sweeps), files.root)
+
+
+def _field_sweeps(files: StudyFiles, paths: Mapping[str, str]) -> tuple[dict[str, Sweep], dict[str, str]]:
+    """The sweeps in these files, and the hash of the file of each architecture of the user's own.
+
+    Raises ConfigurationError with every problem of what the study names.
+    """
+    sweeps: dict[str, Sweep] = {
+        name: files.named(FieldSweep, path, "sweeps", name) for name, path in paths.items()
+    }
     files.check()
-    return ResolvedFiles(files.name, study, sweeps, files.root)
+    own_networks: dict[str, str] = {}
+    for name, path in paths.items():
+        for number, space in enumerate(sweeps[name].spaces):
+            if network := own_network(space.architecture):
+                key = f"{path}: spaces[{number}].architecture"
+                own_networks[space.architecture] = files.hash_of(network, key)
+    files.check()
+    return sweeps, own_networks
 
 
 SOURCES: dict[str, Callable[[StudyFiles], AnyStudy]] = {

@@ -8,6 +8,7 @@ from pydantic import BaseModel
 
 from flexsurr.config.errors import ConfigurationError
 from flexsurr.config.merging import Source, build
+from flexsurr.config.own_network import OwnNetwork, check_source, read_source, sha256
 from flexsurr.config.reading import read_yaml
 
 STUDIES = "config/studies"
@@ -56,6 +57,16 @@ class StudyFiles:
         except ConfigurationError as error:
             self.problems += error.problems
             return record.model_construct()
+
+    def hash_of(self, network: OwnNetwork, key: str) -> str:
+        """The hash of the file of a network that `key` names; whether its class is there is kept as above."""
+        try:
+            source = read_source(self.root, network)
+            check_source(network, source)
+            return sha256(source)
+        except ValueError as error:
+            self.problems.append(f"{key}: {error}")
+            return ""
 
     def check(self) -> None:
         """Raise ConfigurationError if a file that the study names has a problem."""

@@ -42,7 +42,10 @@ class Sweep(Record):
 def _sweep(name: str, architectures: Iterable[type[Architecture]]) -> type[Sweep]:
     """Sweeps of trials of `architectures`: spaces take a list of values for each setting that these have."""
     types = dimensions(architectures)
+    types.pop("sha256", None)  # a file has it, nobody writes it
     several: dict[str, Any] = {key: (_some(value) | None, None) for key, value in types.items()}
+    if "options" in types:  # keywords of a class, each varied by itself
+        several["options"] = (GenericAlias(dict, (str, _some(Any))) | None, None)
     several["architecture"] = (types["architecture"], ...)
     space = create_model(f"{name}Space", __base__=Space, **several)
     return create_model(f"{name}Sweep", __base__=Sweep, spaces=(_some(space), ...))

@@ -13,6 +13,8 @@ from typing import Annotated, Any, ClassVar, Literal, cast, get_args
 from pydantic import AfterValidator, Field, ValidationError, create_model
 
 from flexsurr.config.activation import Activation
+from flexsurr.config.errors import nearest
+from flexsurr.config.own_network import own_network
 from flexsurr.config.schema import Record
 from flexsurr.config.structure import Positive
 from flexsurr.config.study import Count
@@ -57,7 +59,7 @@ class FieldNetwork(StateField):
     activation: Activation
     scaling: ScalingKind = "canonical"
 
-    optimisers = ("levenberg_marquardt", "lbfgs", "adam", "adam_cosine")
+    optimisers = ("levenberg_marquardt", "lbfgs", "adam", "adam_cosine", "adamw", "adamw_cosine")
 
 
 class FieldPolynomial(StateField):
@@ -75,6 +77,27 @@ class PortHamiltonianNetwork(StateField):
     activation: Activation
 
     optimisers = ("levenberg_marquardt",)
+
+
+def _of_users(architecture: str) -> str:
+    if own_network(architecture) is None:
+        raise ValueError("a file and a class in it, as in my_models.py:MyField")
+    return architecture
+
+
+class TorchModule(StateField):
+    """A network of the user's own, by its file and class; `options` are keywords of that class.
+
+    `scaling` is that of states and rates; `sha256` is the hash of the file, by which a run is of its content.
+    """
+
+    architecture: Annotated[str, AfterValidator(_of_users)]
+    options: dict[str, Any] = Field(default_factory=dict)
+    scaling: ScalingKind = "canonical"
+    device: Literal["cpu", "cuda", "auto"] = "cpu"
+    sha256: str = ""
+
+    optimisers = ("lbfgs", "adam", "adam_cosine", "adamw", "adamw_cosine")
 
 
 class Map(Architecture):
@@ -169,11 +192,23 @@ class FirstOrder(Iterative):
     as printed (`norms`: a sample's ‖error of q̇‖ + ‖error of ṗ‖, and their mean over a batch).
     """
 
-    optimiser: Literal["adam", "adam_cosine"]
     learning_rate: Positive
     batch_size: Count
     precision: Literal["single", "double"] = "double"
     loss: Literal["nmse", "mean_square", "norms"] = "nmse"
+
+
+class Adam(FirstOrder):
+    """Adam, with or without the cosine."""
+
+    optimiser: Literal["adam", "adam_cosine"]
+
+
+class AdamW(FirstOrder):
+    """The same where weights shrink by `weight_decay` times the rate at each step too."""
+
+    optimiser: Literal["adamw", "adamw_cosine"]
+    weight_decay: Annotated[float, Field(ge=0)] = 0.01
 
 
 class Trial(Architecture, Optimiser):
@@ -183,14 +218,19 @@ class Trial(Architecture, Optimiser):
     """
 
 
-FIELDS: tuple[type[Architecture], ...] = (FieldNetwork, FieldPolynomial, PortHamiltonianNetwork)
+FIELDS: tuple[type[Architecture], ...] = (
+    FieldNetwork,
+    FieldPolynomial,
+    PortHamiltonianNetwork,
+    TorchModule,
+)
 """What a field may be learned by; of one name, the record fits that takes most of what is given."""
 
 MAPS: tuple[type[Architecture], ...] = (MapPolynomial, MapNetwork)
 """What a map may be learned by."""
 
-OPTIMISERS: tuple[type[Optimiser], ...] = (FullBatch, FirstOrder, LeastSquares)
-"""What trains; the first name is the one that holds where none is given."""
+OPTIMISERS: tuple[type[Optimiser], ...] = (FullBatch, Adam, AdamW, LeastSquares)
+"""What trains; the first name is the one that holds where none is given, for torch modules their first."""
 
 
 def named(records: Iterable[type[Record]], key: str) -> list[str]:
@@ -206,8 +246,11 @@ def trial_of(**settings: Any) -> Trial:
     """
     given = {key: value for key, value in settings.items() if value is not None}
     (first, *_) = named(OPTIMISERS, "optimiser")
-    given.setdefault("optimiser", first)
-    forms = _called("architecture", given.get("architecture"), (*FIELDS, *MAPS))
+    is_users = own_network(str(given.get("architecture"))) is not None
+    given.setdefault("optimiser", TorchModule.optimisers[0] if is_users else first)
+    forms: list[Any] = [TorchModule]
+    if not is_users:
+        forms = _called("architecture", given.get("architecture"), (*FIELDS, *MAPS))
     form = max(forms, key=lambda form: len(form.model_fields.keys() & given.keys()))
     (optimiser,) = _called("optimiser", given["optimiser"], OPTIMISERS)
     takes = form.model_fields | optimiser.model_fields
@@ -247,7 +290,7 @@ def dimensions(architectures: Iterable[type[Architecture]]) -> dict[str, Any]:
     """The types of everything that trials of `architectures` take, by name: what a sweep may vary."""
     forms = tuple(architectures)
     found: dict[str, Any] = {
-        "architecture": Literal[*named(forms, "architecture")],
+        "architecture": _known(named(forms, "architecture"), TorchModule in forms),
         "optimiser": Literal[*named(OPTIMISERS, "optimiser")],
     }
     for record in (*forms, *OPTIMISERS):
@@ -257,6 +300,22 @@ def dimensions(architectures: Iterable[type[Architecture]]) -> dict[str, Any]:
             value = of_union[0] if NoneType in of_union else field.annotation
             found.setdefault(key, Annotated[value, *field.metadata] if field.metadata else value)
     return found
+
+
+def _known(names: list[str], or_users: bool) -> Any:
+    """One of the names or, where `or_users`, a network of the user's own."""
+    if not or_users:
+        return Literal[*names]
+
+    def check(architecture: str) -> str:
+        if architecture not in names and own_network(architecture) is None:
+            raise ValueError(
+                f"{architecture!r} is not allowed{nearest(architecture, names)}; "
+                f"allowed: {', '.join(names)}, or a file and a class of yours, as in my_models.py:MyField"
+            )
+        return architecture
+
+    return Annotated[str, AfterValidator(check)]
 
 
 def _called(key: str, name: Any, records: Iterable[type[Record]]) -> list[Any]:

@@ -7,7 +7,7 @@ from typing import Any, Literal, get_args
 from flexsurr.beam import Implementation, ModalBasis, reduced_order
 from flexsurr.config.study import Variant
 from flexsurr.evaluation.cases import Case, under
-from flexsurr.simulation.rhs import Array, Model
+from flexsurr.simulation.rhs import Array, CompiledModel, Model
 from flexsurr.surrogates import LearnedLoad, LearnedMap, Network, compiled
 
 Form = Literal["described", "numpy", "compiled", "torch"]
@@ -30,15 +30,31 @@ class Contender:
     learned_load: LearnedMap | None = None
 
     def under(self, basis: ModalBasis, case: Case) -> Model:
-        """The field with the load of the case; beside torch, which has no load, the load in NumPy."""
+        """The field with the load of the case; beside flexsurr's own in torch the load is in NumPy."""
         if self.learned_load is not None and case.load is not None:
             return LearnedLoad(self.field, self.learned_load, case.load.history)
-        implementation = "numpy" if self.implementation == "torch" else self.implementation
-        return under(self.field, basis, case, implementation)
+        if self.implementation == "torch":
+            return under(self.field, basis, case, "compiled" if self.steppable else "numpy")
+        return under(self.field, basis, case, self.implementation)
+
+    @property
+    def steppable(self) -> bool:
+        """Whether compiled integrators can step it."""
+        return isinstance(self.field, CompiledModel)
 
     def energy(self, x: Array) -> Array | None:
         """The model's own energy (k,) [J] at states x (k, 2r)."""
         return None if self.own_energy is None else self.own_energy(x)
+
+
+def fastest(surrogate: Any) -> Form:
+    """The implementation by which compiled integrators step a surrogate: torch where it has no program."""
+    return "torch" if is_users(surrogate) and surrogate.program is None else "compiled"
+
+
+def is_users(surrogate: Any) -> bool:
+    """Whether it is a torch module of the user's own."""
+    return bool(surrogate.architecture == "torch")
 
 
 def contenders(
@@ -46,7 +62,8 @@ def contenders(
 ) -> list[Contender]:
     """The reduced model described, numpy and compiled; each surrogate numpy, compiled and, on request, torch.
 
-    `surrogates` maps an architecture's name to its fitted surrogate. Only networks have a torch form.
+    `surrogates` maps an architecture's name to its fitted surrogate. Only networks have a torch form; those
+    of the user's own have that and, where torch can export them, the compiled one.
     """
     found = []
     for implementation in get_args(Implementation):
@@ -60,8 +77,11 @@ def surrogate_contenders(surrogates: Mapping[str, Any], with_torch: bool = False
     found = []
     for name, surrogate in surrogates.items():
         own_energy = getattr(surrogate, "energy", None)
-        found.append(Contender(name, "numpy", surrogate, own_energy))
-        found.append(Contender(name, "compiled", compiled(surrogate), own_energy))
+        if not is_users(surrogate):
+            found.append(Contender(name, "numpy", surrogate, own_energy))
+        found.append(Contender(name, fastest(surrogate), compiled(surrogate), own_energy))
+        if with_torch and is_users(surrogate) and fastest(surrogate) == "compiled":
+            found.append(Contender(name, "torch", surrogate, own_energy))
         if with_torch and isinstance(surrogate, Network):
             # torch takes seconds to import, and nothing else here needs it
             from flexsurr.training import torch_model
@@ -71,12 +91,12 @@ def surrogate_contenders(surrogates: Mapping[str, Any], with_torch: bool = False
 
 
 def with_learned_loads(name: str, surrogate: Any, loads: Mapping[str, LearnedMap]) -> list[Contender]:
-    """One surrogate, compiled, under each learned load instead of the exact one: no kinematics at all.
+    """One surrogate in its fastest form, under each learned load instead of the exact one: no kinematics.
 
     `loads` maps what is added to the surrogate's `name` to generalised forces.
     """
     field, own_energy = compiled(surrogate), getattr(surrogate, "energy", None)
     return [
-        Contender(f"{name}_{added}", "compiled", field, own_energy, learned)
+        Contender(f"{name}_{added}", fastest(surrogate), field, own_energy, learned)
         for added, learned in loads.items()
     ]

@@ -31,8 +31,8 @@ from flexsurr.simulation.rhs import Array, Model
 
 log = logging.getLogger(__name__)
 
-# SciPy's solvers step in Python: a second a simulation at best, half a minute with the described model.
-# So many calls are a steady measure by themselves, and the first few simulations have to do.
+# SciPy's solvers step in Python, and torch is called from there: a second a simulation at best, half a minute
+# with the described model. So many calls are a steady measure by themselves, and the first few have to do.
 STEPS_IN_PYTHON = "scipy_"
 
 
@@ -47,17 +47,17 @@ class Setup:
         """How many of the study's simulations this row runs."""
         if self.contender.implementation == "described":
             return min(settings.described_simulations.of(variant), settings.simulations)
-        if self._steps_in_python:
+        if self._runs_in_python:
             return min(settings.scipy_simulations, settings.simulations)
         return settings.simulations
 
     def repeats(self, settings: EvaluationSettings) -> int:
         """How often each simulation is timed."""
-        return 1 if self._steps_in_python else settings.repeats
+        return 1 if self._runs_in_python else settings.repeats
 
     @property
-    def _steps_in_python(self) -> bool:
-        return self.integrator.method.startswith(STEPS_IN_PYTHON)
+    def _runs_in_python(self) -> bool:
+        return self.contender.implementation == "torch" or self.integrator.method.startswith(STEPS_IN_PYTHON)
 
 
 def cost_table(
@@ -84,11 +84,11 @@ def cost_table(
 
 
 def setups(models: Iterable[Contender], integrators: Iterable[Integrator]) -> Iterator[Setup]:
-    """Every model with the paper's integrator; the compiled ones also with each of `integrators`."""
+    """Every model with the paper's integrator; those with a kernel also with each of `integrators`."""
     compiled_too = [integrator for integrator in integrators if integrator != PAPERS_INTEGRATOR]
     for contender in models:
         yield Setup(contender, PAPERS_INTEGRATOR)
-        if contender.implementation == "compiled":
+        if contender.steppable:
             yield from (Setup(contender, integrator) for integrator in compiled_too)
 
 

@@ -85,7 +85,7 @@ def energy_table(
     dissipates, `deviation_percent` elsewhere. A trajectory that ends early ends its rows.
     """
     settings = study.evaluation
-    compiled = [c for c in contenders(basis, variant, surrogates) if c.implementation == "compiled"]
+    compiled = [c for c in contenders(basis, variant, surrogates) if c.steppable]
     exact = [c for c in compiled if c.model == "rom"]
     integrators = (*settings.integrators, *SCIPY_DEFAULTS)
     fine = sample_times(settings.duration_s, min(settings.output_step_s, DRAWN_EVERY_S))

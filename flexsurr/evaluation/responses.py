@@ -52,7 +52,7 @@ def response_table(
     exact = reduced_order(basis, variant, "numpy")
     states = {"reference": reference.x}
     for contender in contenders(basis, variant, surrogates):
-        if contender.implementation == "compiled" and contender.model != "rom":
+        if contender.steppable and contender.model != "rom":
             model = contender.under(basis, case)
             states[contender.model] = simulate(model, t, case.x0, settings.drawing_integrator).x
     frames = [_frame(variant, response, model, reference, exact, x) for model, x in states.items()]

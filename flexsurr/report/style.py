@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable
 from functools import wraps
 from pathlib import Path
 from typing import Any, ParamSpec
+from zlib import crc32
 
 import matplotlib
 from matplotlib.axes import Axes
@@ -12,6 +13,7 @@ from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
+from flexsurr.config.own_network import own_network
 from flexsurr.storage import replacing
 
 Inputs = ParamSpec("Inputs")
@@ -58,6 +60,10 @@ DASHES: dict[str, Any] = {
 }
 """Line styles beside the colours, for those who print in black and white; solid where none is given."""
 
+OWN_COLOURS = ("#8C510A", "#6A3D9A", "#666600", "#B2182B", "#01665E", "#C51B7D")
+OWN_DASHES = ((0, (6, 2)), (0, (3, 1, 1, 1)), (0, (1.5, 1.5)), (0, (6, 1, 2, 1)), (0, (4, 3)))
+"""Those of networks of the user's own, by a hash of their names: the same in every figure of every run."""
+
 LOADED = "#F6E7C8"
 """The background where a load acts."""
 
@@ -70,6 +76,8 @@ VARIANTS: dict[str, str] = {
 
 def colour(model: str) -> str:
     """The colour of a model; a pale one of its family where the name carries more, as in "hnn_paper"."""
+    if own_network(model):
+        return OWN_COLOURS[crc32(model.encode()) % len(OWN_COLOURS)]
     base = family(model)
     red, green, blue = to_rgb(COLOURS[base])
     share = 1.0 if model == base else 0.5
@@ -77,7 +85,12 @@ def colour(model: str) -> str:
 
 
 def label(model: str) -> str:
-    """The model's name in legends, with what its name carries beyond the family in brackets."""
+    """The model's name in legends, with what its name carries beyond the family in brackets.
+
+    A network of the user's own, my_models.py:MyField, goes by its class.
+    """
+    if own := own_network(model):
+        return own.name
     base = family(model)
     rest = model[len(base) :].strip("_ ")
     return f"{NAMES[base]} ({rest.replace('_', ' ')})" if rest else NAMES[base]
@@ -85,11 +98,15 @@ def label(model: str) -> str:
 
 def dashes(model: str) -> Any:
     """The line style of a model."""
+    if own_network(model):
+        return OWN_DASHES[crc32(model.encode()) % len(OWN_DASHES)]
     return DASHES.get(family(model), "-")
 
 
 def family(model: str) -> str:
     """The name that says a model's colour and line style; KeyError for a model of none."""
+    if own_network(model):
+        return model
     families = [name for name in COLOURS if model == name or model.startswith(f"{name}_")]
     if not families:
         raise KeyError(f"no colour for the model {model!r}: one of {', '.join(COLOURS)}")

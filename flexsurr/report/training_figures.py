@@ -10,6 +10,8 @@ from flexsurr.report.style import (
     GREEN,
     ORANGE,
     PAGE_IN,
+    PURPLE,
+    SKY,
     VARIANTS,
     VERMILION,
     label,
@@ -24,6 +26,8 @@ OPTIMISERS: dict[str, tuple[str, str]] = {
     "lbfgs": ("L-BFGS", GREEN),
     "adam_cosine": ("Adam, cosine schedule", ORANGE),
     "adam": ("Adam", VERMILION),
+    "adamw_cosine": ("AdamW, cosine schedule", PURPLE),
+    "adamw": ("AdamW", SKY),
     "least_squares": ("linear least squares", BLACK),
 }
 

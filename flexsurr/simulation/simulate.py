@@ -7,6 +7,7 @@ import numpy as np
 from flexsurr.config.study import Integrator
 from flexsurr.simulation.compiled_methods import COMPILED, run_compiled
 from flexsurr.simulation.outcome import Outcome
+from flexsurr.simulation.python_kernel import raise_pending
 from flexsurr.simulation.rhs import Array, Model
 from flexsurr.simulation.scipy_methods import run_scipy
 from flexsurr.simulation.trajectory import Trajectory
@@ -43,6 +44,7 @@ def simulate(model: Model, t: Array, x0: Array, integrator: Integrator) -> Traje
         outcome = Outcome(rows=1, end_time_s=float(t[0]), evaluations=0, steps=0, reason="")
     else:
         outcome = _run_pieces(run, t, x, breaks) if breaks else run(t, x)
+        raise_pending()
     return Trajectory(
         t=t[: outcome.rows],
         x=x[: outcome.rows],

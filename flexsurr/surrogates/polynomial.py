@@ -88,6 +88,10 @@ class PolynomialHamiltonian(Surrogate):
         """Nothing: the exponents are saved as an array."""
         return {}
 
+    def arrays_to_keep(self) -> dict[str, np.ndarray]:
+        """Coefficients and exponents."""
+        return {**super().arrays_to_keep(), "exponents": self.exponents}
+
 
 class OscillatorPolynomial(NamedTuple):
     """H = ½ p² w(s) + V(s) with s = q (`step` 1) or q² (`step` 2): coefficients, lowest first, each (n,)."""

@@ -139,6 +139,10 @@ class NetworkPortHamiltonian(PortHamiltonian):
         """Hidden layer, activation and parity; the floor is saved as an array."""
         return {"hidden": list(self.hidden), "activation": self.activation, "even": self.even}
 
+    def arrays_to_keep(self) -> dict[str, np.ndarray]:
+        """Weights and floor."""
+        return {**super().arrays_to_keep(), "floor": self.floor}
+
 
 class NetworkPortHamiltonianKernel(NamedTuple):
     """`layer`: weights (inputs, n) and biases (n,); `readout` (entries, n); the rest packed or (r, r)."""

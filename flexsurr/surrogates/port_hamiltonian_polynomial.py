@@ -100,6 +100,10 @@ class PolynomialPortHamiltonian(PortHamiltonian):
         """Nothing: the exponents are saved as an array."""
         return {}
 
+    def arrays_to_keep(self) -> dict[str, np.ndarray]:
+        """Coefficients and exponents."""
+        return {**super().arrays_to_keep(), "exponents": self.exponents}
+
 
 class PolynomialPortHamiltonianKernel(NamedTuple):
     """Monomials of q times `inverse_q` (r,): number k + 1 is number parents[k] times factor factors[k].

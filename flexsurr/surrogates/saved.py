@@ -42,16 +42,15 @@ def save(
     }
     if about is not None:
         header["about"] = dict(about)
-    arrays: dict[str, np.ndarray] = {"parameters": surrogate.parameters}
-    if isinstance(surrogate, PolynomialHamiltonian | PolynomialPortHamiltonian):
-        arrays["exponents"] = surrogate.exponents
-    if isinstance(surrogate, NetworkPortHamiltonian):
-        arrays["floor"] = surrogate.floor
-    write_archive(path, FORMAT, header, arrays | dict(about_arrays or {}))
+    write_archive(path, FORMAT, header, surrogate.arrays_to_keep() | dict(about_arrays or {}))
 
 
 def load(path: str | Path) -> Surrogate:
-    """The surrogate in `path`. Raises SurrogateFileError for a damaged or foreign file, OSError for none."""
+    """The surrogate in `path`. Raises SurrogateFileError for a damaged or foreign file, OSError for none.
+
+    A network of the user's own runs its file, which lies below the current folder; ConfigurationError says
+    where it is missing, or is not the one that the surrogate was trained with.
+    """
     return read_archive(path, FORMAT, "a surrogate", _surrogate)
 
 
@@ -72,12 +71,17 @@ def load_about(
 
 def _surrogate(header: dict[str, Any], arrays: dict[str, np.ndarray]) -> Surrogate:
     common: dict[str, Any] = {
-        "parameters": arrays["parameters"],
         "scaling": _scaling(header["scaling"]),
         "state_names": tuple(header["state_names"]),
         "state_units": tuple(header["state_units"]),
     }
     architecture = header["architecture"]
+    if architecture == "torch":
+        # torch takes seconds to import, and no other surrogate needs it
+        from flexsurr.surrogates.torch_surrogate import saved_torch_surrogate
+
+        return saved_torch_surrogate(header, arrays, **common)
+    common["parameters"] = arrays["parameters"]
     polynomial = {
         PolynomialHamiltonian.architecture: PolynomialHamiltonian,
         PolynomialPortHamiltonian.architecture: PolynomialPortHamiltonian,

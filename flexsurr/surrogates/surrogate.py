@@ -56,6 +56,10 @@ class Surrogate(ABC):
     def settings(self) -> dict[str, Any]:
         """What, besides parameters, scaling and states, makes this surrogate; plain JSON values."""
 
+    def arrays_to_keep(self) -> dict[str, np.ndarray]:
+        """The arrays that make this surrogate, by the names they have in its file."""
+        return {"parameters": self.parameters}
+
     def derivative(self, t: float, x: Array) -> Array:
         """ẋ (..., 2r) at states `x` (..., 2r), in the units of the states per second."""
         return rates_of(self.scaling, self.scaled_field(scaled_states(self.scaling, x)))

@@ -1,4 +1,4 @@
-"""Adam (Kingma & Ba 2015, algorithm 1) over mini-batches, as torch.optim.Adam computes it.
+"""Adam (Kingma & Ba 2015, algorithm 1) and AdamW (Loshchilov & Hutter 2019) over mini-batches, as in torch.
 
 An epoch goes once through the samples in a random order, the last batch being what is left over. The
 gradient is closed-form and the whole epoch is compiled; nothing else differs from the study's training
@@ -24,6 +24,7 @@ EPSILON = 1e-8
 class Adam:
     """Adam with a constant rate, or one that falls to 0 over `epochs` as half a cosine.
 
+    A step shrinks the weights by `weight_decay` times the rate beforehand (AdamW), or by nothing.
     `precision` is that of weights, data and moments: "single" as torch has it by default, or "double".
     Satisfies `Optimiser`.
     """
@@ -39,6 +40,7 @@ class Adam:
         batch_size: int,
         epochs: int,
         cosine: bool,
+        weight_decay: float = 0.0,
         precision: str,
         seed: int,
     ) -> None:
@@ -47,6 +49,7 @@ class Adam:
         self._objective = replace(objective, x=objective.x.astype(number), y=objective.y.astype(number))
         self._learning_rate, self._batch_size = learning_rate, batch_size
         self._epochs, self._cosine, self._seed = epochs, cosine, seed
+        self._weight_decay = weight_decay
         self._first = np.zeros_like(self.parameters)
         self._second = np.zeros_like(self.parameters)
         self._done = 0
@@ -73,6 +76,7 @@ class Adam:
             order,
             self._batch_size,
             rate,
+            rate * self._weight_decay,
             self._done * -(-len(self._objective.x) // self._batch_size),
             self.parameters,
             self._first,
@@ -98,7 +102,7 @@ class Adam:
 
 
 @njit(**CACHED)
-def _epoch(kernel, x, y, weights, order, batch_size, rate, steps, parameters, first, second, work):
+def _epoch(kernel, x, y, weights, order, batch_size, rate, decay, steps, parameters, first, second, work):
     gradient = np.zeros_like(parameters)
     total = 0.0
     for start in range(0, order.size, batch_size):
@@ -111,5 +115,5 @@ def _epoch(kernel, x, y, weights, order, batch_size, rate, steps, parameters, fi
             g = gradient[i]
             first[i] = BETA_1 * first[i] + (1.0 - BETA_1) * g
             second[i] = BETA_2 * second[i] + (1.0 - BETA_2) * g * g
-            parameters[i] -= size * first[i] / (math.sqrt(second[i]) / root + EPSILON)
+            parameters[i] -= decay * parameters[i] + size * first[i] / (math.sqrt(second[i]) / root + EPSILON)
     return total / order.size

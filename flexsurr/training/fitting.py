@@ -11,11 +11,13 @@ import numpy as np
 import pandas as pd
 
 from flexsurr.config.trial import (
+    AdamW,
     FieldNetwork,
     FieldPolynomial,
     FirstOrder,
     Iterative,
     PortHamiltonianNetwork,
+    TorchModule,
     Trial,
 )
 from flexsurr.storage import Scales
@@ -24,7 +26,6 @@ from flexsurr.surrogates import (
     MLP,
     DissipativeHNN,
     Network,
-    NetworkPortHamiltonian,
     StateScaling,
     Surrogate,
     canonical_scaling,
@@ -127,9 +128,7 @@ def fit(trial: Trial, source: SampleSource, folder: str | Path, report: Report |
     )
 
 
-def _begun(
-    trial: Iterative, dataset: Dataset
-) -> tuple[Network | NetworkPortHamiltonian, Loss, Loss, Optimiser]:
+def _begun(trial: Iterative, dataset: Dataset) -> tuple[Surrogate, Loss, Loss, Optimiser]:
     """Random weights, their losses over training and validation samples, and what will make them better."""
     training = dataset.x_train, dataset.dx_train
     validation = dataset.x_validation, dataset.dx_validation
@@ -138,6 +137,10 @@ def _begun(
         inverse, forward = (PortHamiltonianObjective.of(port, *training, forward=f) for f in (False, True))
         held_out = PortHamiltonianObjective.of(port, *validation, forward=True)
         return port, forward, held_out, InverseThenForward(inverse, forward, port.parameters)
+    if isinstance(trial, TorchModule):
+        from flexsurr.training.torch_training import begun  # here, for it imports torch
+
+        return begun(trial, SCALINGS[trial.scaling](dataset.scales), dataset)
     network = _untrained(trial, dataset)
     objective = Objective.of(network, *training)
     return network, objective, Objective.of(network, *validation), _optimiser(trial, objective)
@@ -166,7 +169,8 @@ def _optimiser(trial: Iterative, objective: Objective) -> Optimiser:
             learning_rate=trial.learning_rate,
             batch_size=trial.batch_size,
             epochs=trial.epochs,
-            cosine=trial.optimiser == "adam_cosine",
+            cosine=trial.optimiser.endswith("cosine"),
+            weight_decay=trial.weight_decay if isinstance(trial, AdamW) else 0.0,
             precision=trial.precision,
             seed=trial.seed,
         )

@@ -13,6 +13,7 @@ from flexsurr.simulation.rhs import Array
 from flexsurr.surrogates import Network
 from flexsurr.surrogates.scalar_networks import ScalarNetworks
 from flexsurr.surrogates.scaling import rates_of, scaled_states
+from flexsurr.surrogates.torch_module import field
 
 ACTIVATIONS: dict[str, Callable[[Tensor], Tensor]] = {
     "elu": nn.functional.elu,
@@ -44,9 +45,9 @@ class Dense(nn.Module):
 
 
 class TorchNetwork(nn.Module):
-    """A network of scaled states: its outputs, or the field made of the gradients of `scalars` networks.
+    """A network of scaled states, as `flexsurr.surrogates.torch_module` takes them.
 
-    No scalars: an MLP. One: H, an HNN. Two: H and the dissipation function, a D-HNN.
+    No scalars: rates, an MLP. One: H, an HNN. Two: H and the dissipation function D, a D-HNN.
     """
 
     def __init__(self, widths: tuple[int, ...], activation: str, scalars: int) -> None:
@@ -55,23 +56,11 @@ class TorchNetwork(nn.Module):
         self.networks = nn.ModuleList(
             Dense(widths, outputs, not scalars, activation) for _ in range(max(scalars, 1))
         )
-        self.scalars = scalars
 
-    def forward(self, x: Tensor) -> Tensor:
-        """The scaled field, (..., 2r) -> (..., 2r)."""
-        if not self.scalars:
-            field: Tensor = self.networks[0](x)
-            return field
-        with torch.enable_grad():
-            x = x if x.requires_grad else x.detach().requires_grad_()
-            hamiltonian, *dissipation = (self._gradient(network(x), x) for network in self.networks)
-            by_q, by_p = hamiltonian.chunk(2, dim=-1)
-            field = torch.cat([by_p, -by_q], dim=-1)
-            return field + dissipation[0] if dissipation else field
-
-    def _gradient(self, scalar: Tensor, x: Tensor) -> Tensor:
-        (gradient,) = torch.autograd.grad(scalar.sum(), x, create_graph=self.training, retain_graph=True)
-        return gradient
+    def forward(self, x: Tensor) -> Tensor | tuple[Tensor, ...]:
+        """Rates (batch, 2r), or scalars (batch, 1), at scaled states (batch, 2r)."""
+        first, *others = (network(x) for network in self.networks)
+        return (first, *others) if others else first
 
 
 def to_torch(network: Network, dtype: torch.dtype = torch.float64) -> TorchNetwork:
@@ -112,7 +101,8 @@ class TorchModel:
         """ẋ (..., 2r) at states `x` (..., 2r), in the units of the states per second."""
         scaling = self.surrogate.scaling
         scaled = torch.from_numpy(scaled_states(scaling, x)).to(next(self.module.parameters()).dtype)
-        return rates_of(scaling, self.module(scaled).detach().double().numpy())
+        rates = field(self.module, torch.atleast_2d(scaled)).detach().double().numpy()
+        return rates_of(scaling, rates.reshape(x.shape))
 
 
 def torch_model(surrogate: Network, dtype: torch.dtype = torch.float64) -> TorchModel:

@@ -458,7 +458,7 @@ def _trials(study: ResolvedStudy | ResolvedFiles) -> dict[str, tuple[Trial, ...]
     problems = []
     for name, sweep in study.sweeps.items():
         try:
-            trials[name] = tuple(expand(sweep))
+            trials[name] = tuple(expand(sweep, study.own_networks))
         except ValueError as error:
             problems.append(f"{study.study.sweeps[name]}: {' '.join(str(error).split())}")
             continue

@@ -21,6 +21,7 @@ SWEEP = "config/sweeps/cantilever.yaml"
 def root(tmp_path: Path) -> Path:
     """A copy of the configuration that may be spoilt."""
     shutil.copytree(REPOSITORY / "config", tmp_path / "config")
+    shutil.copytree(REPOSITORY / "examples", tmp_path / "examples")
     return tmp_path
 
 
@@ -144,6 +145,9 @@ BAD_VALUES = [
     (SWEEP, "spaces.0.hidden", None, ["spaces[0].hidden", "without values"]),
     (SWEEP, "spaces.0.hiden", [[8]], ["spaces[0].hiden", "did you mean 'hidden'"]),
     (SWEEP, "spaces.0.architecture", "hmm", ["spaces[0].architecture", "'hmm'", "hnn"]),
+    (SWEEP, "spaces.0.architecture", "hmm", ["my_models.py:MyField"]),
+    (SWEEP, "spaces.0.architecture", "mine.py:Field", ["spaces[0].architecture", "no file mine.py below"]),
+    (SWEEP, "spaces.0.architecture", "../mine.py:Field", ["spaces[0].architecture", "outside the project"]),
     (SWEEP, "spaces.1.optimiser", ["adam"], ["adam takes learning_rate and batch_size"]),
     (SWEEP, "spaces.1.degree", [4], ["degree does nothing with hnn"]),
     (SWEEP, "spaces", [], ["spaces", "[]", "at least one value"]),

@@ -66,6 +66,7 @@ def test_every_preset_is_sound(preset):
 
 def test_a_study_has_its_own_values_and_otherwise_those_of_the_study_it_is_based_on(tmp_path):
     shutil.copytree(REPOSITORY / "config", tmp_path / "config")
+    shutil.copytree(REPOSITORY / "examples", tmp_path / "examples")
     (tmp_path / "mine.yaml").write_text("studies: [wing, wing_unit]\n")
     base, study = (one.study for one in load(tmp_path, ["config/config.yaml", "mine.yaml"]).studies)
     assert (base.reduction.normalisation, study.reduction.normalisation) == ("mass", "unit")

@@ -28,6 +28,7 @@ def airliner(root: Path) -> SamplePlan:
 @pytest.fixture
 def copy(tmp_path) -> Path:
     shutil.copytree(ROOT / "config", tmp_path / "config")
+    shutil.copytree(ROOT / "examples", tmp_path / "examples")
     return tmp_path
 
 

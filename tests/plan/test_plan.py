@@ -21,6 +21,7 @@ BEAM = "cantilever"
 @pytest.fixture
 def root(tmp_path: Path) -> Path:
     shutil.copytree(REPOSITORY / "config", tmp_path / "config")
+    shutil.copytree(REPOSITORY / "examples", tmp_path / "examples")
     return tmp_path
 
 
@@ -130,7 +131,7 @@ def test_what_samples_configurations_needs_no_data_and_no_simulation(root):
 
 def test_a_run_is_named_by_its_content(root):
     for key, run in plan(root).runs.items():
-        assert key.startswith(f"{run.trial.architecture}-")
+        assert key.startswith(f"{run.trial.architecture.rpartition(':')[2]}-")
     keys = list(plan(root).runs)
     change(root, SWEEP, "spaces", yaml.safe_load((root / SWEEP).read_text())["spaces"][::-1])
     assert sorted(plan(root).runs) == sorted(keys)

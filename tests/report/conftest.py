@@ -217,9 +217,8 @@ def metrics() -> pd.DataFrame:
                     "degree": 6 if architecture == "polynomial" else None,
                     "optimiser": optimiser,
                     "structure": "cantilever",
-                    **dict.fromkeys(
-                        ("scaling", "learning_rate", "batch_size", "precision", "loss", "keep", "patience")
-                    ),
+                    **dict.fromkeys(("options", "scaling", "learning_rate", "weight_decay", "batch_size")),
+                    **dict.fromkeys(("precision", "device", "loss", "keep", "patience")),
                     "time_limit_s": None,
                     "seed": 0,
                     "dataset": "default",

@@ -3,7 +3,7 @@
 import pytest
 from matplotlib.colors import to_rgb
 
-from flexsurr.report.style import COLOURS, colour, label
+from flexsurr.report.style import COLOURS, colour, dashes, family, label
 
 
 def test_surrogates_have_colours_of_their_own():
@@ -19,6 +19,13 @@ def test_a_model_of_another_sweep_is_pale_and_says_which():
         pale > full or full == 1.0
         for pale, full in zip(to_rgb(colour("hnn_paper")), to_rgb(colour("hnn")), strict=True)
     )
+
+
+def test_a_network_of_ones_own_goes_by_its_class():
+    name = "models/mine.py:MyField"
+    assert label(name) == "MyField"
+    assert colour(name) == colour(family(name)) not in {colour(model) for model in COLOURS}
+    assert dashes(name) not in ("-", dashes("hnn"))
 
 
 def test_a_model_nobody_knows_has_no_colour():

@@ -7,6 +7,7 @@ import pytest
 import torch
 from oscillator import free_responses, network, three_pairs
 
+from flexsurr.surrogates.torch_module import field
 from flexsurr.training import nmse
 from flexsurr.training.networks import to_torch
 from flexsurr.training.objective import Objective
@@ -17,8 +18,8 @@ DATASETS = {"one pair": free_responses(4, 20), "three pairs": three_pairs()}
 
 def automatic_jacobian(surrogate, x):
     """∂f/∂θ (m, 2r, n) of the scaled field in the layout of `Network.parameters`."""
-    module = to_torch(surrogate).train()
-    field = module(torch.from_numpy(x))
+    module = to_torch(surrogate)
+    rates = field(module, torch.from_numpy(x), create_graph=True)
     rows = [
         torch.cat(
             [
@@ -26,7 +27,7 @@ def automatic_jacobian(surrogate, x):
                 for block in torch.autograd.grad(f, module.parameters(), retain_graph=True)
             ]
         )
-        for f in field.reshape(-1)
+        for f in rates.reshape(-1)
     ]
     return torch.stack(rows).reshape(*x.shape, -1).numpy()
 
@@ -73,8 +74,9 @@ def test_the_losses_of_first_order_steps_are_torchs(architecture, minimised):
     dataset = DATASETS["three pairs"]
     surrogate = network(dataset, architecture, (4, 3))
     objective = replace(Objective.of(surrogate, dataset.x_train, dataset.dx_train), minimised=minimised)
-    module = to_torch(surrogate).train()
-    loss = LOSSES[minimised](module(torch.from_numpy(objective.x)) - torch.from_numpy(objective.y))
+    module = to_torch(surrogate)
+    rates = field(module, torch.from_numpy(objective.x), create_graph=True)
+    loss = LOSSES[minimised](rates - torch.from_numpy(objective.y))
     blocks = torch.autograd.grad(loss, module.parameters())
     expected = torch.cat([block.T.reshape(-1) if block.ndim == 2 else block for block in blocks]).numpy()
     found = np.empty_like(expected)

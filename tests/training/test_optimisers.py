@@ -5,6 +5,7 @@ import pytest
 import torch
 from oscillator import free_responses, network
 
+from flexsurr.surrogates.torch_module import field
 from flexsurr.training.adam import Adam
 from flexsurr.training.lbfgs import LBFGS
 from flexsurr.training.levenberg_marquardt import LevenbergMarquardt
@@ -117,10 +118,10 @@ def test_levenberg_marquardt_notices_its_end():
 DATASET = free_responses(4, 25)
 
 
-def torchs_own_loop(surrogate, objective, epochs, rate, batch, cosine):
+def torchs_own_loop(surrogate, objective, epochs, rate, batch, cosine, weight_decay=0.0):
     """The study's loop: autograd twice, torch.optim.Adam, mean squared error; batches in Adam's order."""
-    module = to_torch(surrogate).train()
-    optimiser = torch.optim.Adam(module.parameters(), lr=rate)
+    module = to_torch(surrogate)
+    optimiser = torch.optim.AdamW(module.parameters(), lr=rate, weight_decay=weight_decay)
     schedule = torch.optim.lr_scheduler.CosineAnnealingLR(optimiser, epochs if cosine else 10**12)
     x, y = torch.from_numpy(objective.x), torch.from_numpy(objective.y)
     weights = torch.from_numpy(objective.output_weights)
@@ -128,7 +129,8 @@ def torchs_own_loop(surrogate, objective, epochs, rate, batch, cosine):
         order = np.random.default_rng([0, epoch]).permutation(len(x))
         for start in range(0, len(x), batch):
             chosen = order[start : start + batch]
-            loss = (((module(x[chosen]) - y[chosen]) ** 2).mean(dim=0) * weights).sum()
+            rates = field(module, x[chosen], create_graph=True)
+            loss = (((rates - y[chosen]) ** 2).mean(dim=0) * weights).sum()
             optimiser.zero_grad()
             loss.backward()
             optimiser.step()
@@ -136,16 +138,19 @@ def torchs_own_loop(surrogate, objective, epochs, rate, batch, cosine):
     return from_torch(module, surrogate).parameters
 
 
+@pytest.mark.parametrize("decay", [0.0, 0.3])
 @pytest.mark.parametrize("cosine", [False, True])
 @pytest.mark.parametrize("architecture", ["hnn", "mlp"])
-def test_adam_is_torchs(architecture, cosine):
+def test_adam_is_torchs(architecture, cosine, decay):
+    """AdamW without a decay is Adam."""
     surrogate = network(DATASET, architecture, (8,))
     objective = Objective.of(surrogate, DATASET.x_train, DATASET.dx_train)
     settings = {"learning_rate": 3e-3, "batch_size": 16, "epochs": 4, "cosine": cosine, "seed": 0}
+    settings |= {"weight_decay": decay}
     optimiser = Adam(objective, surrogate.parameters, **settings, precision="double")
     for _ in range(4):
         optimiser.epoch()
-    expected = torchs_own_loop(surrogate, objective, 4, 3e-3, 16, cosine)
+    expected = torchs_own_loop(surrogate, objective, 4, 3e-3, 16, cosine, decay)
     np.testing.assert_allclose(optimiser.parameters, expected, rtol=1e-9, atol=1e-11)
     single = Adam(objective, surrogate.parameters, **settings, precision="single")
     for _ in range(4):
@@ -171,7 +176,7 @@ def test_lbfgs_is_torchs():
     losses = [optimiser.epoch() for _ in range(12)]
     assert np.all(np.diff(losses) < 0.0)
 
-    module = to_torch(surrogate).train()
+    module = to_torch(surrogate)
     x, y = torch.from_numpy(objective.x), torch.from_numpy(objective.y)
     weights = torch.from_numpy(objective.output_weights)
     reference = torch.optim.LBFGS(
@@ -180,7 +185,7 @@ def test_lbfgs_is_torchs():
 
     def closure():
         reference.zero_grad()
-        loss = (((module(x) - y) ** 2).mean(dim=0) * weights).sum()
+        loss = (((field(module, x, create_graph=True) - y) ** 2).mean(dim=0) * weights).sum()
         loss.backward()
         return loss
 

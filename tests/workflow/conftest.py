@@ -7,7 +7,7 @@ import pytest
 from project import Project
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-PARTS = ("Snakefile", "workflow", "profiles", "config")
+PARTS = ("Snakefile", "workflow", "profiles", "config", "examples")
 STATE = ("results", ".snakemake")
 
 

@@ -44,8 +44,8 @@ FLOWN = {
 }
 LEARNT = {
     "manifest": 2,
-    "train": 6,
-    "score": 6,
+    "train": 8,
+    "score": 10,
     "learn_load": 2,
     **SELECTED,
     **products_of(*RUNS, *COSTS, *RESPONSES, "learned_loads-*"),
@@ -59,7 +59,7 @@ LEARNT = {
         (SWEEP, "spaces.1.hidden", [[8], [4]], {"train": 2, "score": 2, **SELECTED}),
         (QUICK, f"{OVER}.dataset.trajectories", 9, {"simulate": 2, **LEARNT}),
         (QUICK, f"{OVER}.evaluation.repeats", 2, {"evaluate": 4, **products_of(*COSTS)}),
-        (QUICK, f"{OVER}.evaluation.long_responses", 3, {"score": 6, **SELECTED}),
+        (QUICK, f"{OVER}.evaluation.long_responses", 3, {"score": 10, **SELECTED}),
         (
             QUICK,
             f"{OVER}.statics.tip_loads_N",
@@ -79,6 +79,12 @@ LEARNT = {
 def test_changing_a_value(copy_of_quick, file, keys, value, jobs):
     copy_of_quick.change(file, keys, value)
     assert copy_of_quick.scheduled() == jobs
+
+
+def test_editing_the_file_of_a_network_of_ones_own_trains_it_anew(copy_of_quick):
+    with (copy_of_quick.root / "examples" / "my_models.py").open("a") as source:
+        source.write("# another thought\n")
+    assert copy_of_quick.scheduled() == {"train": 2, "score": 2, **SELECTED}
 
 
 @pytest.mark.parametrize(

@@ -13,8 +13,8 @@ from flexsurr.storage import read_manifest, read_shards
 BEAM = "cantilever"
 
 TRAINING_COLUMNS = (
-    "study,variant,run_id,architecture,configurations,hidden,activation,degree,scaling,optimiser,"
-    "learning_rate,batch_size,precision,loss,keep,patience,time_limit_s,seed,dataset,"
+    "study,variant,run_id,architecture,configurations,hidden,activation,degree,options,scaling,optimiser,"
+    "learning_rate,weight_decay,batch_size,precision,device,loss,keep,patience,time_limit_s,seed,dataset,"
     "epoch_limit,epochs,best_epoch,wall_s,processor_s,parameters,final_loss,train_nmse,validation_nmse,best_validation_nmse,published_loss,"
     "sampling,lattice,networks,inputs"
 )
@@ -116,6 +116,23 @@ def test_one_surrogate_of_each_architecture_is_selected(quick):
         assert {"hnn", "mlp", "polynomial"} <= set(chosen)
         for name in ("hnn", "mlp", "polynomial"):
             assert quick.plan.runs[chosen[name]["run_id"]].variant == variant
+
+
+def test_a_network_of_ones_own_goes_all_the_way(quick):
+    name = "examples/my_models.py:Oscillators"
+    for variant in quick.plan.variants(BEAM):
+        run = json.loads((quick.results / "selected" / f"{BEAM}.json").read_text())[variant][name]
+        assert run["run_id"].startswith("Oscillators-")
+        assert (quick.results / "runs" / run["run_id"] / "weights.npz").is_file()
+    training = pd.read_csv(quick.results / "tables" / "training.csv").set_index("architecture")
+    assert (training.loc[name, "options"] == "hidden=8").all()
+    cost = pd.read_csv(quick.results / "tables" / "cost.csv").query("model == @name")
+    assert set(cost["response"]) == {"free", "forced"}
+    assert set(cost["implementation"]) == {"torch", "compiled"}
+    assert {method.partition("(")[0] for method in cost["integrator"]} == {"scipy_radau", "dop853_fixed"}
+    assert (cost["diverged"] == 0).all()
+    responses = pd.read_parquet(quick.results / "evaluation" / BEAM / "response-hamiltonian-free.parquet")
+    assert name in set(responses["model"])
 
 
 def test_every_rule_leaves_a_log(quick):
