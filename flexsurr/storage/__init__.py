@@ -12,13 +12,16 @@ from flexsurr.storage.manifest import (
     split_trajectories,
     write_manifest,
 )
-from flexsurr.storage.parquet import Shard, ShardMetadata, read_shard, write_shard
-from flexsurr.storage.samples import (
+from flexsurr.storage.parquet import (
     SampleMetadata,
     Samples,
+    Shard,
+    ShardMetadata,
     read_all_samples,
     read_samples,
+    read_shard,
     write_samples,
+    write_shard,
 )
 from flexsurr.storage.scales import Scales
 

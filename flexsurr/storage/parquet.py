@@ -1,15 +1,15 @@
-"""Shards: whole trajectories of one dataset in a Parquet file, with what made them in its metadata.
+"""Shards in Parquet: whole trajectories, or samples of a function y = g(u), with what made them as metadata.
 
-Columns: `trajectory` (number within the dataset), `t` [s], the states by name, and their time
-derivatives as `d_<state>_dt`.
+Columns of trajectories: `trajectory` (number within the dataset), `t` [s], the states by name, and their time
+derivatives as `d_<state>_dt`. Columns of samples: `sample` (number), the inputs and the outputs by name.
 """
 
 import hashlib
 import json
-from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import pyarrow as pa
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from flexsurr.storage.arrow import own_table
 from flexsurr.storage.atomic import read_bytes, replacing
-from flexsurr.storage.errors import DamagedFile
+from flexsurr.storage.errors import DamagedFile, StorageError
 
 FORMAT_VERSION = 1
 METADATA_KEY = b"flexsurr"
@@ -40,6 +40,11 @@ class ShardMetadata:
     failures: tuple[str, ...] = ()
     format_version: int = FORMAT_VERSION
 
+    @property
+    def columns(self) -> list[str]:
+        """The names of the columns, in their order."""
+        return ["trajectory", "t", *self.state_names, *(f"d_{name}_dt" for name in self.state_names)]
+
 
 @dataclass(frozen=True)
 class Shard:
@@ -52,19 +57,46 @@ class Shard:
     metadata: ShardMetadata
 
 
+@dataclass(frozen=True)
+class SampleMetadata:
+    """The same of samples. Every input was drawn between `input_low` and `input_high`, in its unit."""
+
+    study: str
+    sampling: str
+    seed: int
+    configuration: str
+    first: int
+    count: int
+    input_names: tuple[str, ...]
+    input_units: tuple[str, ...]
+    input_low: tuple[float, ...]
+    input_high: tuple[float, ...]
+    output_names: tuple[str, ...]
+    output_units: tuple[str, ...]
+    format_version: int = FORMAT_VERSION
+
+    @property
+    def columns(self) -> list[str]:
+        """The names of the columns, in their order."""
+        return ["sample", *self.input_names, *self.output_names]
+
+
+@dataclass(frozen=True, eq=False)
+class Samples:
+    """Inputs u (m, n) and outputs y (m, k) in the units of the metadata, numbered from `metadata.first`."""
+
+    u: Array
+    y: Array
+    metadata: SampleMetadata
+
+
+MetadataT = TypeVar("MetadataT", ShardMetadata, SampleMetadata)
+
+
 def write_shard(path: Path, shard: Shard) -> None:
     """Write the shard atomically. Raises ValueError if its columns don't fit each other or its metadata."""
-    _check_contents(shard)
-    names = _column_names(shard.metadata.state_names)
-    columns = [shard.trajectory, shard.t, *shard.x.T, *shard.dx.T]
-    table = pa.table(
-        {name: np.ascontiguousarray(column) for name, column in zip(names, columns, strict=True)}
-    )
-    metadata = json.dumps(asdict(shard.metadata), sort_keys=True).encode()
-    with replacing(path) as beside:
-        pq.write_table(
-            table.replace_schema_metadata({METADATA_KEY: metadata}), beside, write_page_checksum=True
-        )
+    _check_shard(shard)
+    _write(path, [shard.trajectory, shard.t, *shard.x.T, *shard.dx.T], shard.metadata)
 
 
 def read_shard(path: Path, sha256: str | None = None) -> Shard:
@@ -73,51 +105,112 @@ def read_shard(path: Path, sha256: str | None = None) -> Shard:
     Raises StorageError naming the file if it is missing, damaged, truncated, no shard of this format,
     or (where `sha256` is given) another file than the one that was recorded.
     """
-    content = read_bytes(path)
-    if sha256 is not None and hashlib.sha256(content).hexdigest() != sha256:
-        raise DamagedFile(f"{path}: is not the file that was recorded (its SHA-256 differs)")
-    table = own_table(path, content)
-    metadata = _read_metadata(path, table)
-    expected = _column_names(metadata.state_names)
-    if table.column_names != expected:
-        raise DamagedFile(f"{path}: has the columns {table.column_names}; expected {expected}")
-    columns = {name: table.column(name).to_numpy() for name in expected}
-    dimension = len(metadata.state_names)
+    columns, metadata = _read(path, ShardMetadata, sha256)
+    names, dimension = metadata.columns, len(metadata.state_names)
     shard = Shard(
         trajectory=columns["trajectory"],
         t=columns["t"],
-        x=np.column_stack([columns[name] for name in expected[2 : 2 + dimension]]),
-        dx=np.column_stack([columns[name] for name in expected[2 + dimension :]]),
+        x=_side_by_side(columns, names[2 : 2 + dimension]),
+        dx=_side_by_side(columns, names[2 + dimension :]),
         metadata=metadata,
     )
     try:
-        _check_contents(shard)
+        _check_shard(shard)
     except ValueError as error:
         raise DamagedFile(f"{path}: {error}") from None
     return shard
 
 
-def _column_names(state_names: Sequence[str]) -> list[str]:
-    return ["trajectory", "t", *state_names, *(f"d_{name}_dt" for name in state_names)]
+def write_samples(path: Path, samples: Samples) -> None:
+    """Write one shard atomically. Raises ValueError for arrays that don't fit their metadata."""
+    _check_samples(samples)
+    first, count = samples.metadata.first, samples.metadata.count
+    _write(path, [np.arange(first, first + count), *samples.u.T, *samples.y.T], samples.metadata)
 
 
-def _read_metadata(path: Path, table: pa.Table) -> ShardMetadata:
+def read_samples(path: Path) -> Samples:
+    """The shard at `path`. Raises StorageError naming a file that is missing, damaged or foreign."""
+    columns, metadata = _read(path, SampleMetadata)
+    inputs, outputs = metadata.input_names, metadata.output_names
+    samples = Samples(_side_by_side(columns, inputs), _side_by_side(columns, outputs), metadata)
+    try:
+        _check_samples(samples)
+    except ValueError as error:
+        raise DamagedFile(f"{path}: {error}") from None
+    return samples
+
+
+def read_all_samples(paths: Sequence[Path], configuration: str, total: int) -> Samples:
+    """All shards of one dataset as one. Raises StorageError naming what is missing or foreign."""
+    shards = []
+    for path in paths:
+        samples = read_samples(path)
+        if (found := samples.metadata.configuration) != configuration:
+            raise DamagedFile(f"{path}: belongs to the configuration {found}; expected {configuration}")
+        shards.append(samples)
+    shards.sort(key=lambda samples: samples.metadata.first)
+    reached = 0
+    for samples in shards:
+        if samples.metadata.first != reached:
+            raise StorageError(
+                f"samples {reached} to {samples.metadata.first - 1} of {configuration} are missing or doubled"
+            )
+        reached += samples.metadata.count
+    if reached != total:
+        raise StorageError(f"{reached} samples of {configuration}; expected {total}")
+    return Samples(
+        np.concatenate([samples.u for samples in shards]),
+        np.concatenate([samples.y for samples in shards]),
+        replace(shards[0].metadata, first=0, count=total),
+    )
+
+
+def _write(path: Path, columns: Iterable[np.ndarray], metadata: ShardMetadata | SampleMetadata) -> None:
+    table = pa.table(
+        {name: np.ascontiguousarray(column) for name, column in zip(metadata.columns, columns, strict=True)}
+    )
+    header = json.dumps(asdict(metadata), sort_keys=True).encode()
+    with replacing(path) as beside:
+        pq.write_table(
+            table.replace_schema_metadata({METADATA_KEY: header}), beside, write_page_checksum=True
+        )
+
+
+def _read(
+    path: Path, kind: type[MetadataT], sha256: str | None = None
+) -> tuple[dict[str, np.ndarray], MetadataT]:
+    """The columns and the metadata of a shard of one kind."""
+    content = read_bytes(path)
+    if sha256 is not None and hashlib.sha256(content).hexdigest() != sha256:
+        raise DamagedFile(f"{path}: is not the file that was recorded (its SHA-256 differs)")
+    table = own_table(path, content)
+    metadata = _metadata(path, table, kind)
+    if table.column_names != metadata.columns:
+        raise DamagedFile(f"{path}: has the columns {table.column_names}; expected {metadata.columns}")
+    return {name: table.column(name).to_numpy() for name in metadata.columns}, metadata
+
+
+def _metadata(path: Path, table: pa.Table, kind: type[MetadataT]) -> MetadataT:
     raw = (table.schema.metadata or {}).get(METADATA_KEY)
     if raw is None:
         raise DamagedFile(f"{path}: a foreign Parquet file, without the metadata of a shard")
     try:
         values: dict[str, Any] = json.loads(raw)
-        if values.get("format_version") != FORMAT_VERSION:
-            version = values.get("format_version")
+        if (version := values.get("format_version")) != FORMAT_VERSION:
             raise DamagedFile(f"{path}: has format version {version}; this program reads {FORMAT_VERSION}")
-        for key in ("state_names", "state_units", "failures"):
-            values[key] = tuple(values[key])
-        return ShardMetadata(**values)
-    except (ValueError, TypeError, KeyError, AttributeError):
+        whole: dict[str, Any] = {
+            key: tuple(value) if isinstance(value, list) else value for key, value in values.items()
+        }
+        return kind(**whole)
+    except (ValueError, TypeError, AttributeError):
         raise DamagedFile(f"{path}: its metadata cannot be understood") from None
 
 
-def _check_contents(shard: Shard) -> None:
+def _side_by_side(columns: Mapping[str, np.ndarray], names: Sequence[str]) -> Array:
+    return np.column_stack([columns[name] for name in names])
+
+
+def _check_shard(shard: Shard) -> None:
     metadata, rows = shard.metadata, len(shard.t)
     dimension = len(metadata.state_names)
     if len(metadata.state_units) != dimension:
@@ -141,3 +234,13 @@ def _check_contents(shard: Shard) -> None:
     expected = np.arange(metadata.first, metadata.first + metadata.count)
     if not np.array_equal(present, expected):
         raise ValueError(f"trajectories {present.tolist()}; expected {expected.tolist()}")
+
+
+def _check_samples(samples: Samples) -> None:
+    metadata = samples.metadata
+    shapes = (metadata.count, len(metadata.input_names)), (metadata.count, len(metadata.output_names))
+    if (samples.u.shape, samples.y.shape) != shapes:
+        raise ValueError(f"arrays of the shapes {samples.u.shape} and {samples.y.shape}; expected {shapes}")
+    for name, array in (("inputs", samples.u), ("outputs", samples.y)):
+        if array.dtype != np.float64 or not np.isfinite(array).all():
+            raise ValueError(f"{name} that are not finite numbers")

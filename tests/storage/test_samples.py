@@ -12,6 +12,7 @@ from flexsurr.storage import (
     StorageError,
     read_all_samples,
     read_samples,
+    read_shard,
     write_samples,
 )
 
@@ -81,3 +82,8 @@ def test_numbers_that_are_not_finite_are_refused(tmp_path):
     wrong = replace(shard(0, 4), metadata=shard(0, 5).metadata)
     with pytest.raises(ValueError, match="shapes"):
         write_samples(tmp_path / "shard.parquet", wrong)
+
+
+def test_a_shard_of_the_other_kind_is_refused(paths):
+    with pytest.raises(StorageError, match=r"shard-0\.parquet: its metadata cannot be understood"):
+        read_shard(paths[0])
