@@ -142,7 +142,7 @@ def _figures(job: Job, trial: Trial, result: Fit, dataset_sha256: str) -> dict[s
         "reason": result.reason,
         **settings,
         "hidden": "x".join(str(width) for width in settings["hidden"] or ()),
-        "options": ", ".join(f"{name}={value}" for name, value in (settings["options"] or {}).items())
+        "options": ", ".join(f"{name}={value}" for name, value in (settings.get("options") or {}).items())
         or None,
         "epoch_limit": settings["epochs"],
         "epochs": result.epochs,
