@@ -28,11 +28,17 @@ def main(job: Job, output: Path) -> None:
     if job["filter"] is not None:
         by = Filter.model_validate(job["filter"])
         trajectories = tuple(filtered(recording, by) for recording in trajectories)
+    u = [each.u for each in trajectories if each.u is not None]
+    dx = np.concatenate([each.dx for each in trajectories if each.dx is not None])
+    if u:
+        # the surrogate learns what the states do by themselves
+        dx[:, dx.shape[1] // 2 :] -= np.concatenate(u)
     shard = Shard(
         trajectory=np.repeat(np.arange(len(trajectories)), [len(each.t) for each in trajectories]),
         t=np.concatenate([each.t for each in trajectories]),
         x=np.concatenate([each.x for each in trajectories]),
-        dx=np.concatenate([each.dx for each in trajectories if each.dx is not None]),
+        dx=dx,
+        u=np.concatenate(u) if u else None,
         metadata=ShardMetadata(
             study=job["study"],
             variant=job["variant"],
@@ -42,6 +48,8 @@ def main(job: Job, output: Path) -> None:
             count=len(trajectories),
             state_names=columns.state_names,
             state_units=columns.state_units,
+            input_names=columns.input_names,
+            input_units=columns.input_units,
         ),
     )
     write_shard(output, shard)

@@ -30,11 +30,22 @@ class StateColumn(Record):
         return self.name or self.column
 
 
+class ForceColumn(Record):
+    """An input: a generalised force, in the unit of the momentum that it acts on per second."""
+
+    column: Word
+    unit: Word
+
+
 class Pair(Record):
-    """A generalised coordinate q and its momentum p."""
+    """A generalised coordinate q and its momentum p, and the recorded `force` that acts on p, if any.
+
+    The surrogate learns ẋ = f(x), where ṗ is f and the force together.
+    """
 
     q: StateColumn
     p: StateColumn
+    force: ForceColumn | None = None
 
 
 class Columns(Record):
@@ -93,6 +104,22 @@ class Columns(Record):
         return any(state.derivative is not None for state in self.ordered)
 
     @property
+    def have_forces(self) -> bool:
+        """Whether a force acts on any of the momenta."""
+        return any(pair.force is not None for pair in self.pairs)
+
+    @property
+    def input_names(self) -> tuple[str, ...]:
+        """What datasets call the forces: one for each pair, if there is any."""
+        return tuple(f"force_on_{pair.p.called}" for pair in self.pairs) if self.have_forces else ()
+
+    @property
+    def input_units(self) -> tuple[str, ...]:
+        """Units of the forces; those of pairs that none acts on follow from the momentum's."""
+        units = (pair.force.unit if pair.force else f"({pair.p.unit})/s" for pair in self.pairs)
+        return tuple(units) if self.have_forces else ()
+
+    @property
     def named(self) -> Iterator[str]:
         """Every column that must be there."""
         yield self.t
@@ -102,6 +129,7 @@ class Columns(Record):
             yield state.column
             if state.derivative is not None:
                 yield state.derivative
+        yield from (pair.force.column for pair in self.pairs if pair.force is not None)
 
 
 class Filter(Record):

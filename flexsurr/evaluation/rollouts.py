@@ -18,10 +18,11 @@ from flexsurr.config.study import Integrator
 from flexsurr.evaluation.contenders import surrogate_contenders
 from flexsurr.evaluation.cost import setups
 from flexsurr.evaluation.timing import measuring, wall_time
-from flexsurr.simulation import simulate
-from flexsurr.simulation.rhs import Array
+from flexsurr.simulation import Trajectory, simulate
+from flexsurr.simulation.rhs import Array, Model
 from flexsurr.storage import Manifest, read_shards
 from flexsurr.surrogates import Hamiltonian, compiled
+from flexsurr.surrogates.recorded_forces import RecordedForces
 
 CURVE_POINTS = 400
 """At least so many points draw a smooth curve, however few samples were recorded."""
@@ -32,11 +33,20 @@ DATA = "data"
 
 @dataclass(frozen=True, eq=False)
 class HeldOut:
-    """A recorded trajectory that no training has seen: its number, t (m,) [s], x (m, d)."""
+    """A recorded trajectory that no training has seen: its number, t (m,) [s], x (m, d).
+
+    `u` (m, d/2) are the forces that acted on its momenta, if any were recorded.
+    """
 
     number: int
     t: Array
     x: Array
+    u: Array | None = None
+
+    def followed_by(self, model: Model, t: Array, integrator: Integrator) -> Trajectory:
+        """What `model` does from the first sample on, under the same forces, at times `t` (k,) [s]."""
+        under = model if self.u is None else RecordedForces(model, self.t, self.u)
+        return simulate(under, t, self.x[0], integrator)
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +69,8 @@ class HeldOutTrajectories:
         for shard in read_shards(manifest):
             for number in sorted(wanted.intersection(shard.trajectory.tolist())):
                 rows = shard.trajectory == number
-                found.append(HeldOut(number, shard.t[rows], shard.x[rows]))
+                forces = None if shard.u is None else shard.u[rows]
+                found.append(HeldOut(number, shard.t[rows], shard.x[rows], forces))
         names = manifest.state_names
         spread = np.array(manifest.scales.standard_deviation[: len(names)])
         return cls(tuple(found), spread, names, manifest.state_units)
@@ -73,15 +84,15 @@ class HeldOutTrajectories:
             return math.inf
         return float(100.0 * np.sqrt(np.mean(((x - recorded.x) / self.spread) ** 2)))
 
-    def own_energy_drift_percent(self, surrogate: Any, x: Array) -> float:
-        """Largest |H(t) − H(0)| along `x` (k, d) over the range of H at the recorded samples, in percent.
+    def own_energy_drift_percent(self, recorded: HeldOut, surrogate: Any, x: Array) -> float:
+        """Largest |H(t) − H(0)| along `x` (k, d) over the range of H at all recorded samples, in percent.
 
-        H is the surrogate's own: a dissipative form loses it. NaN where it has none.
+        H is the surrogate's own: a dissipative form loses it. NaN where it has none, and under forces.
         """
-        if not isinstance(surrogate, Hamiltonian):
+        if recorded.u is not None or not isinstance(surrogate, Hamiltonian):
             return math.nan
         energy = surrogate.energy(x)
-        range_of = np.ptp(surrogate.energy(np.concatenate([recorded.x for recorded in self.trajectories])))
+        range_of = np.ptp(surrogate.energy(np.concatenate([each.x for each in self.trajectories])))
         return float(100.0 * np.abs(energy - energy[0]).max() / range_of)
 
 
@@ -96,7 +107,7 @@ def rollout_table(
     for name, surrogate in surrogates.items():
         model = compiled(surrogate)
         for recorded in held_out.trajectories:
-            trajectory = simulate(model, recorded.t, recorded.x[0], integrator)
+            trajectory = recorded.followed_by(model, recorded.t, integrator)
             rows.append(
                 {
                     "model": name,
@@ -105,7 +116,9 @@ def rollout_table(
                     "duration_s": recorded.t[-1] - recorded.t[0],
                     "completed": trajectory.completed,
                     "error_percent": held_out.error_percent(recorded, trajectory.x),
-                    "own_energy_drift_percent": held_out.own_energy_drift_percent(surrogate, trajectory.x),
+                    "own_energy_drift_percent": held_out.own_energy_drift_percent(
+                        recorded, surrogate, trajectory.x
+                    ),
                 }
             )
     return pd.DataFrame(rows)
@@ -141,7 +154,7 @@ def rollout_curves(
         fine = np.linspace(recorded.t[0], recorded.t[-1], max(CURVE_POINTS, len(recorded.t)))
         curves = {DATA: (recorded.t, recorded.x)}
         for name, surrogate in surrogates.items():
-            trajectory = simulate(compiled(surrogate), fine, recorded.x[0], integrator)
+            trajectory = recorded.followed_by(compiled(surrogate), fine, integrator)
             curves[name] = trajectory.t, trajectory.x
         for model, (t, x) in curves.items():
             for state, unit, values in zip(held_out.state_names, held_out.state_units, x.T, strict=True):
@@ -166,8 +179,8 @@ def rollout_cost(
             in_python = setup.contender.implementation != "compiled"
             for recorded in held_out.trajectories:
                 # the first steps load or compile what the timed ones use
-                simulate(model, recorded.t[:2], recorded.x[0], setup.integrator)
-                run = partial(simulate, model, recorded.t, recorded.x[0], setup.integrator)
+                recorded.followed_by(model, recorded.t[:2], setup.integrator)
+                run = partial(recorded.followed_by, model, recorded.t, setup.integrator)
                 trajectory, wall_s = wall_time(run, 1 if in_python else repeats)
                 if trajectory.completed:
                     error = held_out.error_percent(recorded, trajectory.x)

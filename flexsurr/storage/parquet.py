@@ -1,7 +1,8 @@
 """Shards in Parquet: whole trajectories, or samples of a function y = g(u), with what made them as metadata.
 
-Columns of trajectories: `trajectory` (number within the dataset), `t` [s], the states by name, and their time
-derivatives as `d_<state>_dt`. Columns of samples: `sample` (number), the inputs and the outputs by name.
+Columns of trajectories: `trajectory` (number within the dataset), `t` [s], the states by name, their time
+derivatives as `d_<state>_dt`, and inputs by name where there are any. Columns of samples: `sample` (number),
+the inputs and the outputs by name.
 """
 
 import hashlib
@@ -27,7 +28,10 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class ShardMetadata:
-    """What a shard belongs to. `configuration` is the hash of every value its dataset depends on."""
+    """What a shard belongs to. `configuration` is the hash of every value its dataset depends on.
+
+    Inputs are generalised forces on the second half of the states, one for each of these.
+    """
 
     study: str
     variant: str
@@ -38,23 +42,35 @@ class ShardMetadata:
     state_names: tuple[str, ...]
     state_units: tuple[str, ...]
     failures: tuple[str, ...] = ()
+    input_names: tuple[str, ...] = ()
+    input_units: tuple[str, ...] = ()
     format_version: int = FORMAT_VERSION
 
     @property
     def columns(self) -> list[str]:
         """The names of the columns, in their order."""
-        return ["trajectory", "t", *self.state_names, *(f"d_{name}_dt" for name in self.state_names)]
+        rates = (f"d_{name}_dt" for name in self.state_names)
+        return ["trajectory", "t", *self.state_names, *rates, *self.input_names]
 
 
 @dataclass(frozen=True)
 class Shard:
-    """trajectory (m,), t (m,) [s], x (m, d) in the units of the metadata, dx (m, d) in those per second."""
+    """trajectory (m,), t (m,) [s], x (m, d) in the units of the metadata, dx (m, d) in those per second.
+
+    Where there are inputs `u` (m, d/2), dx is what is left without them: a field of the states alone.
+    """
 
     trajectory: NDArray[np.int64]
     t: Array
     x: Array
     dx: Array
     metadata: ShardMetadata
+    u: Array | None = None
+
+    @property
+    def inputs(self) -> Array:
+        """The inputs (m, d/2), or none of them (m, 0)."""
+        return np.empty((len(self.t), 0)) if self.u is None else self.u
 
 
 @dataclass(frozen=True)
@@ -96,7 +112,7 @@ MetadataT = TypeVar("MetadataT", ShardMetadata, SampleMetadata)
 def write_shard(path: Path, shard: Shard) -> None:
     """Write the shard atomically. Raises ValueError if its columns don't fit each other or its metadata."""
     _check_shard(shard)
-    _write(path, [shard.trajectory, shard.t, *shard.x.T, *shard.dx.T], shard.metadata)
+    _write(path, [shard.trajectory, shard.t, *shard.x.T, *shard.dx.T, *shard.inputs.T], shard.metadata)
 
 
 def read_shard(path: Path, sha256: str | None = None) -> Shard:
@@ -111,8 +127,9 @@ def read_shard(path: Path, sha256: str | None = None) -> Shard:
         trajectory=columns["trajectory"],
         t=columns["t"],
         x=_side_by_side(columns, names[2 : 2 + dimension]),
-        dx=_side_by_side(columns, names[2 + dimension :]),
+        dx=_side_by_side(columns, names[2 + dimension : 2 + 2 * dimension]),
         metadata=metadata,
+        u=_side_by_side(columns, metadata.input_names) if metadata.input_names else None,
     )
     try:
         _check_shard(shard)
@@ -215,15 +232,20 @@ def _check_shard(shard: Shard) -> None:
     dimension = len(metadata.state_names)
     if len(metadata.state_units) != dimension:
         raise ValueError(f"{dimension} states and {len(metadata.state_units)} units")
+    inputs = len(metadata.input_names)
+    if len(metadata.input_units) != inputs or 2 * inputs not in (0, dimension):
+        raise ValueError(f"{inputs} inputs in {len(metadata.input_units)} units for {dimension} states")
     if (
         shard.trajectory.shape != (rows,)
         or shard.x.shape != (rows, dimension)
         or shard.dx.shape != shard.x.shape
+        or shard.inputs.shape != (rows, inputs)
     ):
         raise ValueError("columns of different lengths")
     if shard.trajectory.dtype != np.int64:
         raise ValueError(f"trajectory numbers of type {shard.trajectory.dtype}; expected int64")
-    for name, values in (("t", shard.t), ("states", shard.x), ("derivatives", shard.dx)):
+    numbers = {"t": shard.t, "states": shard.x, "derivatives": shard.dx, "inputs": shard.inputs}
+    for name, values in numbers.items():
         if values.dtype != np.float64:
             raise ValueError(f"{name} of type {values.dtype}; expected float64")
         if not np.isfinite(values).all():

@@ -29,12 +29,16 @@ Column = NDArray[Any]
 
 @dataclass(frozen=True, eq=False)
 class Recording:
-    """One trajectory of a file: t (m,) [s], x (m, d), and dx (m, d) where the file holds derivatives."""
+    """One trajectory of a file: t (m,) [s], x (m, d), and dx (m, d) where the file holds derivatives.
+
+    `u` (m, d/2) holds the generalised forces on the momenta, where there are any.
+    """
 
     file: str
     t: Array
     x: Array
     dx: Array | None
+    u: Array | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,6 +156,10 @@ def _trajectories(
     dx = None
     if columns.have_derivatives:
         dx = np.column_stack([numbers[str(state.derivative)] for state in columns.ordered])
+    u = None
+    if columns.have_forces:
+        none = np.zeros_like(t)
+        u = np.column_stack([numbers[p.force.column] if p.force else none for p in columns.pairs])
     for name, rows in _groups(file, table, columns):
         which = "" if name is None else f" of trajectory {name}"
         if len(rows) < least:
@@ -164,7 +172,8 @@ def _trajectories(
                 f"{file}: row {row + 1}{which}: {columns.t} is {t[row]:g} after {t[before]:g}; "
                 "allowed: a time that increases"
             )
-        yield Recording(file, t[rows], x[rows], None if dx is None else dx[rows])
+        given = (None if each is None else each[rows] for each in (dx, u))
+        yield Recording(file, t[rows], x[rows], *given)
 
 
 def _groups(

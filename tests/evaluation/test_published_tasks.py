@@ -24,7 +24,7 @@ from flexsurr.training import fit, split_dataset
 
 STATES = {"state_names": ("q", "p"), "state_units": ("1", "1")}
 INTEGRATOR = Integrator(method="dop853_fixed", step_s=0.01)
-NETWORK = {"hidden": (8,), "activation": "tanh", "epochs": 300, "patience": 40}
+NETWORK = {"hidden": (3,), "activation": "squareplus", "epochs": 300, "patience": 40}
 PAIR = {name: {"column": name, "unit": "1", "derivative": f"d{name}_dt"} for name in ("q", "p")}
 COLUMNS = Columns.model_validate({"trajectory": "trajectory", "pairs": [PAIR]})
 
@@ -36,23 +36,25 @@ def learned(trial, dataset, folder):
 @pytest.mark.parametrize("task", [SPRING, PENDULUM], ids=lambda task: task.name)
 def test_an_hnn_keeps_energy_better_than_its_first_paper(task, tmp_path):
     recordings(task, seed=0).to_csv(tmp_path / "task.csv", index=False)
-    found = [
+    smooth = [
         filtered(each, Filter()) for each in read_recordings(tmp_path, ["task.csv"], COLUMNS).trajectories
     ]
     dataset = split_dataset(
         np.repeat(np.arange(50), task.samples),
-        np.concatenate([each.x for each in found]),
-        np.concatenate([each.dx for each in found]),
+        np.concatenate([each.x for each in smooth]),
+        np.concatenate([each.dx for each in smooth]),
         validation=range(25, 50),
         **STATES,
     )
     surrogate = learned(NETWORK | {"architecture": "hnn"}, dataset, tmp_path)
-    assert energy_mse(task, compiled(surrogate), 0, INTEGRATOR) < task.published["hnn"]
+    found = np.mean([energy_mse(task, compiled(surrogate), seed, INTEGRATOR) for seed in range(3)])
+    assert found < task.published["hnn"]
 
 
 def test_a_d_hnn_learns_the_damped_spring_better_than_its_first_paper(tmp_path):
     x, dx = grid(DAMPED_SPRING)
     test = np.random.default_rng(0).permutation(len(x))[530:]
     dataset = split_dataset(np.arange(len(x)), x, dx, validation=test.tolist(), **STATES)
-    surrogate = learned(NETWORK | {"architecture": "dissipative_hnn"}, dataset, tmp_path)
+    wider = {"architecture": "dissipative_hnn", "hidden": (8,), "activation": "tanh"}
+    surrogate = learned(NETWORK | wider, dataset, tmp_path)
     assert rate_mse(surrogate, x[test], dx[test]) < DAMPED_SPRING.published["dissipative_hnn"]

@@ -76,6 +76,21 @@ def test_a_run_is_judged_by_its_worst_rollout_and_a_diverging_one_is_counted(hel
     assert lost["long_response_error_percent_worst"] is None
 
 
+def test_recorded_forces_act_on_the_surrogate_too():
+    """A spring from rest under a force that grows, ṗ = −2 q + u: straight lines, so the samples are exact."""
+    t = np.linspace(0.0, 2.0, 9)
+    q, p = 0.5 * t - 0.25 * np.sin(2.0 * t), 0.25 - 0.25 * np.cos(2.0 * t)
+    pushed = HeldOut(0, t, np.column_stack([q, p]), t[:, None])
+    held_out = HeldOutTrajectories((pushed,), np.ones(2), NAMES, UNITS)
+    table = rollout_table({"polynomial": oscillator()}, held_out, SMOOTH)
+    assert table["error_percent"].max() < 1e-7
+    assert table["own_energy_drift_percent"].isna().all()
+    cost = rollout_cost({"polynomial": oscillator()}, held_out, SMOOTH, repeats=1)
+    assert cost["error_percent"].max() < 1.0
+    alone = HeldOutTrajectories((HeldOut(0, t, pushed.x),), np.ones(2), NAMES, UNITS)
+    assert rollout_table({"polynomial": oscillator()}, alone, SMOOTH)["error_percent"].min() > 10.0
+
+
 def test_the_data_are_drawn_beside_every_surrogate(held_out):
     curves = rollout_curves({"polynomial": oscillator()}, held_out, SMOOTH, drawn=1)
     assert set(curves["trajectory"]) == {3}

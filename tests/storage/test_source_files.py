@@ -139,6 +139,16 @@ def test_polynomials_pass_the_filter_unchanged_however_samples_are_spaced(order,
     np.testing.assert_allclose(slope[:, 0], polynomial.deriv()(t), rtol=0.0, atol=1e-9)
 
 
+def test_forces_are_read_where_they_act_and_are_zero_elsewhere(tmp_path):
+    frame = table().assign(push=lambda f: f["time"] ** 2)
+    write(tmp_path / "a.csv", frame)
+    force = {"force": {"column": "push", "unit": "N m"}}
+    other = {"q": {"column": "rate", "unit": "m"}, "p": {"column": "torque", "unit": "kg m/s"}}
+    found = read(tmp_path, "a.csv", pairs=[{"q": Q, "p": P, **force}, other]).trajectories[1]
+    assert found.u is not None
+    np.testing.assert_allclose(found.u, np.column_stack([frame["push"][6:], np.zeros(6)]))
+
+
 def test_derivatives_that_are_there_are_kept_and_others_estimated(tmp_path):
     write(tmp_path / "a.csv", table())
     given_ones = read(tmp_path, "a.csv", pairs=GIVEN).trajectories[0]
