@@ -13,15 +13,14 @@ from flexsurr.training.coefficient_accuracy import held_out_errors
 from flexsurr.training.coefficient_data import coefficient_data
 
 
-def main(job: Job, selection: Path, runs: Path, shards: list[Path], accuracy: Path, errors: Path) -> None:
+def main(job: Job, selection: Path, runs: Path, datasets: Path, accuracy: Path, errors: Path) -> None:
     """Write the accuracy of each selected map, and the errors of the network on its held-out samples."""
     tables = []
     for label, chosen in read_json(selection).items():
         name = chosen["variant"]
         read = job["samples"][name]
-        samples = read_all_samples(
-            [path for path in shards if path.parent.name == name], read["configuration"], read["samples"]
-        )
+        shards = [datasets / name / f"shard-{number:04d}.parquet" for number in range(job["shards"])]
+        samples = read_all_samples(shards, read["configuration"], read["samples"])
         data = coefficient_data(samples, read["held_out"], read["seed"])
         predicted = load_map(runs, chosen)(data.u)
         tables.append(accuracy_of(data, predicted, label))
@@ -36,7 +35,7 @@ if __name__ == "__main__":
         {
             "selection": "the selected maps",
             "runs": "the folder of all runs",
-            "shards": "of all samples …",
+            "datasets": "the folder of all samples of the study",
             "accuracy": "one row an output and map",
             "errors": "one row a held-out sample",
         },

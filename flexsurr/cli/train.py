@@ -41,8 +41,8 @@ def main(job: Job, data: list[Path], store: Path, folder: Path) -> None:
     """Write parameters.json, fit.json, history.parquet, weights.npz and best.npz of the run into `folder`.
 
     weights.npz holds what the trial keeps, best.npz what validated best. A trial that diverges ends well,
-    with status "failed", its reason, and the best weights it met. `data` is the manifest of the
-    dataset, for a map the shards of its samples; a trial that samples configurations has none.
+    with status "failed", its reason, and the best weights it met. `data` is the folder of the
+    dataset or, for a map, of its samples; a trial that samples configurations has none.
     """
     with alone_in(folder):
         _train(job, data, store, folder)
@@ -61,7 +61,7 @@ def _of_field(job: Job, trial: Trial, data: list[Path], folder: Path) -> _Task:
     basis, configurations = _basis(job), configurations_of(trial)
     dataset: SampleSource
     if configurations is None or basis is None:
-        dataset = ShardedDataset(read_manifest(data[0]))
+        dataset = ShardedDataset(read_manifest(data[0] / "manifest.json"))
     else:
         ranges = part_of(Study, job["part"]).dataset.initial_conditions
         dataset = configuration_samples(basis, job["variant"], ranges, configurations)
@@ -77,7 +77,8 @@ def _of_field(job: Job, trial: Trial, data: list[Path], folder: Path) -> _Task:
 
 
 def _of_map(job: Job, trial: Map, data: list[Path], folder: Path) -> _Task:
-    samples = read_all_samples(data, job["configuration"], job["samples"])
+    shards = [data[0] / f"shard-{number:04d}.parquet" for number in range(job["shards"])]
+    samples = read_all_samples(shards, job["configuration"], job["samples"])
     dataset = coefficient_data(samples, job["held_out"], job["seed"])
     save = save_coefficient_network if isinstance(trial, MapNetwork) else save_coefficient_polynomial
     return _Task(dataset.sha256, lambda report: fit_coefficients(trial, dataset, folder, report), save)
@@ -178,7 +179,7 @@ if __name__ == "__main__":
     command(
         main,
         {
-            "data": "the manifest of the dataset, or all shards of samples; none for configurations …",
+            "data": "the folder of the dataset, or of samples; none for configurations …",
             "store": "the address of the tracking store",
             "folder": "of the run",
         },

@@ -106,6 +106,7 @@ class SamplePlan:
             "dataset": DEFAULT,
             "data": self._split(trial.dataset),
             "trial": trial.model_dump(mode="json"),
+            "shards": self.shards,
             **self._read(trial.dataset),
         }
 
@@ -120,7 +121,8 @@ class SamplePlan:
 
     def accuracy(self) -> Job:
         """What the selected maps err by on the samples that each was fitted to."""
-        return {"study": self.name, "samples": {data: self._read(data) for data in self.datasets()}}
+        samples = {data: self._read(data) for data in self.datasets()}
+        return {"study": self.name, "shards": self.shards, "samples": samples}
 
     def fly(self) -> Job:
         """Aircraft, flights, and the lattice and the limits as the samples had them."""

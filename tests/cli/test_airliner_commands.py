@@ -28,15 +28,13 @@ def results(tmp_path_factory) -> Path:
             sample.main(PLAN.simulate(name, shard), shard_path(root, shard, name))
     store.main({"uri": None, "studies": ["airliner"]}, root / "mlflow" / "airliner.json")
     for run_id, trial in PLAN.runs.items():
-        shards = [shard_path(root, shard, trial.dataset) for shard in range(PLAN.shards)]
         folder = root / "runs" / run_id
-        train.main(PLAN.train(run_id), shards, root / "mlflow" / "airliner.json", folder)
+        train.main(PLAN.train(run_id), [root / trial.dataset], root / "mlflow" / "airliner.json", folder)
         weights = (folder / "weights.npz", folder / "best.npz")
         score.main(PLAN.score(run_id), folder / "fit.json", *weights, [], folder / "metrics.json")
     choose(root / "runs", root, root / "selected.json")
-    every = [shard_path(root, shard, name) for name in PLAN.datasets() for shard in range(PLAN.shards)]
     tables = (root / "accuracy.parquet", root / "errors.parquet")
-    accuracy.main(PLAN.accuracy(), root / "selected.json", root / "runs", every, *tables)
+    accuracy.main(PLAN.accuracy(), root / "selected.json", root / "runs", root, *tables)
     return root
 
 
@@ -101,6 +99,5 @@ def test_without_a_network_that_finished_nothing_is_selected(results, tmp_path):
 def test_samples_of_another_configuration_are_refused(results, tmp_path):
     run_id = next(iter(PLAN.runs))
     job = {**PLAN.train(run_id), "configuration": "0" * 16}
-    shards = [shard_path(results, shard) for shard in range(PLAN.shards)]
     with pytest.raises(StorageError, match=r"shard-0000\.parquet: belongs to the configuration"):
-        train.main(job, shards, results / "mlflow" / "airliner.json", tmp_path)
+        train.main(job, [results / "pseudo_random"], results / "mlflow" / "airliner.json", tmp_path)

@@ -44,7 +44,7 @@ class Results:
 
     def train(self, key: str = RUN) -> None:
         store = self.root / "mlflow/store.json"  # there is none: the page is tested elsewhere
-        train.main(self.job("train", key), [self.dataset / "manifest.json"], store, self.root / "runs" / key)
+        train.main(self.job("train", key), [self.dataset], store, self.root / "runs" / key)
 
     def score(self, key: str = RUN) -> None:
         run = self.root / "runs" / key

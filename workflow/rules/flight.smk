@@ -27,11 +27,12 @@ rule accuracy:
         job=job("accuracy", "study"),
         code=code("accuracy"),
         runs=f"{RESULTS}/runs",
+        datasets=f"{RESULTS}/datasets/{{study}}",
     message:
         "accuracy of the maps of {wildcards.study}"
     shell:
         "python -m flexsurr accuracy --job {params.job:q} --selection {input.selection:q}"
-        " --runs {params.runs:q} --shards {input.shards:q} --accuracy {output.accuracy:q}"
+        " --runs {params.runs:q} --datasets {params.datasets:q} --accuracy {output.accuracy:q}"
         " --errors {output.errors:q} > {log:q} 2>&1"
 
 

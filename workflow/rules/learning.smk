@@ -31,12 +31,13 @@ rule train:
     params:
         job=job("train", "run_id"),
         code=code("train"),
+        data=lambda w, input: sorted({os.path.dirname(file) for file in input.data}),
         folder=f"{RESULTS}/runs/{{run_id}}",
         store=STORE,
     message:
         "training {wildcards.run_id}"
     shell:
-        "python -m flexsurr train --job {params.job:q} --data {input.data:q}"
+        "python -m flexsurr train --job {params.job:q} --data {params.data:q}"
         " --store {params.store:q} --folder {params.folder:q} > {log:q} 2>&1"
 
 
