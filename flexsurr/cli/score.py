@@ -25,22 +25,17 @@ Errors = Callable[[Any], dict[str, Any]]
 """The errors of a surrogate's long responses, by their names in its metrics."""
 
 
-def main(job: Job, fit: Path, weights: Path, best: Path, manifest: list[Path], output: Path) -> None:
+def main(job: Job, fit: Path, weights: Path, best: Path, manifest: Path, output: Path) -> None:
     """Write the run's metrics: what training says of it and, unless that failed, its scores.
 
     `manifest` is that of the dataset on whose held-out samples every surrogate of the variant is scored.
-    Where the run keeps its last weights, those that validated best are scored too, as `best_…`. A map has no
-    `manifest`: what training says of it is all.
+    Where the run keeps its last weights, those that validated best are scored too, as `best_…`.
     """
-    metrics = read_run(fit)
-    if not manifest:
-        write_json(output, metrics)
-        return
-    metrics |= _setting(job)
+    metrics = read_run(fit) | _setting(job)
     if metrics["status"] == "finished":
         surrogate = load(weights)
-        errors = _beside_reference(job) if "structure" in job else _beside_recordings(job, manifest[0])
-        metrics |= held_out_errors(surrogate, load_dataset(manifest[0]))
+        errors = _beside_reference(job) if "structure" in job else _beside_recordings(job, manifest)
+        metrics |= held_out_errors(surrogate, load_dataset(manifest))
         metrics |= errors(surrogate)
         if metrics["keep"] == "last":
             metrics |= {f"best_{name}": value for name, value in errors(load(best)).items()}
@@ -83,7 +78,7 @@ if __name__ == "__main__":
             "fit": "what training says of the run",
             "weights": "the surrogate that it keeps",
             "best": "the one that validated best",
-            "manifest": "the dataset to score it on; none for a map …",
+            "manifest": "the dataset to score it on",
             "output": "its metrics",
         },
         expected=(EquilibriumNotFound, ArithmeticError),

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from flexsurr.training.dataset import Dataset, ShardedDataset, load_dataset, split_dataset
-    from flexsurr.training.fitting import Fit, fit
+    from flexsurr.training.fit_result import Fit
+    from flexsurr.training.fitting import fit
     from flexsurr.training.learned_maps import fit_network_map, fit_polynomial_map
     from flexsurr.training.losses import nmse
     from flexsurr.training.networks import torch_model
@@ -34,7 +35,7 @@ __all__ = [
 
 _MODULES = {
     "Dataset": "dataset",
-    "Fit": "fitting",
+    "Fit": "fit_result",
     "ShardedDataset": "dataset",
     "expand": "sweep",
     "fit": "fitting",

@@ -23,7 +23,7 @@ from flexsurr.surrogates.coefficient_network import (
 from flexsurr.surrogates.coefficient_polynomial import CoefficientPolynomial, terms
 from flexsurr.training.coefficient_data import CoefficientData
 from flexsurr.training.epochs import Limits, Report, run_epochs
-from flexsurr.training.fitting import Fit
+from flexsurr.training.fit_result import Fit
 from flexsurr.training.levenberg_marquardt import LevenbergMarquardt
 from flexsurr.training.losses import nmse
 from flexsurr.training.optimiser import Optimiser

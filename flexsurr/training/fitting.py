@@ -3,12 +3,11 @@
 import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
-import pandas as pd
 
 from flexsurr.config.trial import (
     AdamW,
@@ -35,6 +34,7 @@ from flexsurr.surrogates import (
 from flexsurr.training.adam import Adam
 from flexsurr.training.dataset import Dataset, SampleSource
 from flexsurr.training.epochs import Limits, Loss, Report, run_epochs
+from flexsurr.training.fit_result import Fit
 from flexsurr.training.initialisation import initial_parameters
 from flexsurr.training.inverse_dynamics import NotPositiveDefinite, fit_port_hamiltonian
 from flexsurr.training.least_squares import fit_polynomial
@@ -52,31 +52,6 @@ SCALINGS: dict[str, Callable[[Scales], StateScaling]] = {
     "per_feature": feature_scaling,
     "min_max": min_max_scaling,
 }
-
-
-@dataclass(frozen=True, eq=False)
-class Fit:
-    """What a trial came to: the surrogate that the trial keeps, and the one that validated best.
-
-    `final_loss` is the last epoch's, as trained; all others are the nmse. A failed fit holds the best weights
-    it met: at epoch 0, the random ones it began with. Of a map the states are its outputs.
-    """
-
-    surrogate: Any
-    best: Any
-    status: Literal["finished", "failed"]
-    reason: str
-    epochs: int
-    best_epoch: int
-    wall_s: float
-    processor_s: float
-    final_loss: float
-    train_nmse: float
-    validation_nmse: float
-    best_validation_nmse: float
-    parameters: int
-    history: pd.DataFrame
-    validation_nmse_per_state: tuple[float, ...]
 
 
 def fit(trial: Trial, source: SampleSource, folder: str | Path, report: Report | None = None) -> Fit:

@@ -2,8 +2,9 @@
 
 The import graph is read from the sources without running them: every import of a flexsurr module is
 followed, wherever in a file it stands. A name imported from a package leads to the module that defines
-it; the package's own `__init__` counts only where it holds more than imports and `__all__`, so that a
-new name in its list does not rerun everything. Within a module every character counts, comments too.
+it; the package's own `__init__` counts only where it holds more than imports, `__all__` and the names that
+its `__getattr__` imports when they are asked for, so that a new name in its list does not rerun
+everything. Within a module every character counts, comments too.
 """
 
 import ast
@@ -63,7 +64,7 @@ def _defining(root: Path, source: str, name: str) -> str:
     if _exists(root, submodule):
         return submodule
     if _is_package(root, source) and _only_lists_names(root, source):
-        for node in _tree(root, source).body:
+        for node in ast.walk(_tree(root, source)):
             if isinstance(node, ast.ImportFrom):
                 for alias in node.names:
                     if (alias.asname or alias.name) == name:
@@ -80,15 +81,21 @@ def _absolute(root: Path, module: str, node: ast.ImportFrom) -> str:
 
 
 def _only_lists_names(root: Path, package: str) -> bool:
-    """Whether the package's `__init__` holds nothing but a docstring, imports and `__all__`."""
-    for node in _tree(root, package).body:
-        docstring = isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
-        names = isinstance(node, ast.Assign) and [ast.unparse(target) for target in node.targets] == [
-            "__all__"
-        ]
-        if not (docstring or names or isinstance(node, ast.Import | ast.ImportFrom)):
-            return False
-    return True
+    """Whether the package's `__init__` only passes names on: at once, or by `__getattr__` when asked."""
+    return all(_passes_names_on(node) for node in _tree(root, package).body)
+
+
+def _passes_names_on(node: ast.stmt) -> bool:
+    match node:
+        case ast.Expr(value=ast.Constant()) | ast.Import() | ast.ImportFrom():
+            return True
+        case ast.Assign(targets=[ast.Name(id="__all__" | "_MODULES")]):
+            return True
+        case ast.If(test=ast.Name(id="TYPE_CHECKING"), orelse=[]):
+            return all(_passes_names_on(inner) for inner in node.body)
+        case ast.FunctionDef(name="__getattr__"):
+            return True
+    return False
 
 
 def _is_package(root: Path, module: str) -> bool:

@@ -28,8 +28,8 @@ from flexsurr.workflow.sample_plan import EVALUATED, SamplePlan
 Job = dict[str, Any]
 
 RESPONSE_KINDS = ("free", "forced")
-SIMULATORS = {"trajectories": "simulate", "samples": "sample"}
-"""The commands that make shards, by the source of a study."""
+COMMANDS_OF_SAMPLES = {"simulate": "sample", "train": "train-map", "score": "score-map"}
+"""Where a rule has a command of its own for studies of samples: each depends on its own code alone."""
 
 DRAWN_RESPONSES = (*RESPONSE_KINDS, "sustained")
 
@@ -190,9 +190,9 @@ class Plan:
         }
         return {**job, "configuration": _hash(job)}
 
-    def simulator(self, study: str) -> str:
-        """The command that makes the shards of one study: each depends on its own code alone."""
-        return SIMULATORS["samples" if study in self.of_samples else "trajectories"]
+    def command(self, rule: str, study: str) -> str:
+        """The command by which `rule` makes what one study needs."""
+        return COMMANDS_OF_SAMPLES.get(rule, rule) if study in self.of_samples else rule
 
     def simulate(self, study: str, data: str, shard: int | str) -> Job:
         """One shard, by its number: trajectories, or samples, `first` to `first + count − 1`."""

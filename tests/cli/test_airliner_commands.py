@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from flexsurr.aerodynamics.features import COEFFICIENTS
-from flexsurr.cli import accuracy, sample, score, select, store, train
+from flexsurr.cli import accuracy, sample, score_map, select, store, train_map
 from flexsurr.config.settings import load
 from flexsurr.storage import StorageError, read_samples
 from flexsurr.surrogates.coefficient_network import load_coefficient_network
@@ -29,9 +29,9 @@ def results(tmp_path_factory) -> Path:
     store.main({"uri": None, "studies": ["airliner"]}, root / "mlflow" / "airliner.json")
     for run_id, trial in PLAN.runs.items():
         folder = root / "runs" / run_id
-        train.main(PLAN.train(run_id), [root / trial.dataset], root / "mlflow" / "airliner.json", folder)
+        train_map.main(PLAN.train(run_id), [root / trial.dataset], root / "mlflow" / "airliner.json", folder)
         weights = (folder / "weights.npz", folder / "best.npz")
-        score.main(PLAN.score(run_id), folder / "fit.json", *weights, [], folder / "metrics.json")
+        score_map.main(PLAN.score(run_id), folder / "fit.json", *weights, [], folder / "metrics.json")
     choose(root / "runs", root, root / "selected.json")
     tables = (root / "accuracy.parquet", root / "errors.parquet")
     accuracy.main(PLAN.accuracy(), root / "selected.json", root / "runs", root, *tables)
@@ -100,4 +100,4 @@ def test_samples_of_another_configuration_are_refused(results, tmp_path):
     run_id = next(iter(PLAN.runs))
     job = {**PLAN.train(run_id), "configuration": "0" * 16}
     with pytest.raises(StorageError, match=r"shard-0000\.parquet: belongs to the configuration"):
-        train.main(job, [results / "pseudo_random"], results / "mlflow" / "airliner.json", tmp_path)
+        train_map.main(job, [results / "pseudo_random"], results / "mlflow" / "airliner.json", tmp_path)

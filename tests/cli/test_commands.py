@@ -14,7 +14,7 @@ from flexsurr.cli import join
 from flexsurr.config.settings import load
 from flexsurr.storage import read_shard
 from flexsurr.workflow.job_files import write_job
-from flexsurr.workflow.plan import SIMULATORS, Plan
+from flexsurr.workflow.plan import COMMANDS_OF_SAMPLES, Plan
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 PLAN = Plan(load(REPOSITORY, ["config/config.yaml", "config/presets/quick.yaml"]))
@@ -137,7 +137,9 @@ def test_a_command_told_to_stop_closes_what_is_open(tmp_path, sent, code):
 def test_help_lists_every_command_of_the_rules_and_what_each_code_means():
     text = run("--help").stdout
     rules = "".join(path.read_text() for path in (REPOSITORY / "workflow" / "rules").glob("*.smk"))
-    called = set(re.findall(r"python -m flexsurr ([a-z-]+)", rules)) | set(SIMULATORS.values())
+    called = set(re.findall(r"python -m flexsurr ([a-z-]+)", rules)) | {
+        command for pair in COMMANDS_OF_SAMPLES.items() for command in pair
+    }
     assert called
     assert called | set(FOR_PEOPLE) == set(commands())
     for part in (*commands().items(), "for you", "snakemake", "130"):

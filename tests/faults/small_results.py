@@ -49,7 +49,7 @@ class Results:
     def score(self, key: str = RUN) -> None:
         run = self.root / "runs" / key
         files = [run / "fit.json", run / "weights.npz", run / "best.npz"]
-        score.main(self.job("score", key), *files, [self.dataset / "manifest.json"], run / "metrics.json")
+        score.main(self.job("score", key), *files, self.dataset / "manifest.json", run / "metrics.json")
 
     def select(self) -> None:
         job = {"study": STUDY, "sweeps": {"default": [RUN, OTHER]}}

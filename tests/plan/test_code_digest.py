@@ -85,7 +85,9 @@ def test_a_missing_module_is_named(root):
         ("manifest", "flexsurr.storage.manifest", "flexsurr.beam"),
         ("train", "flexsurr.training.tracking", "flexsurr.evaluation"),
         ("score", "flexsurr.evaluation.selection", "flexsurr.report"),
-        ("select", "flexsurr.training.selection", "flexsurr.evaluation"),
+        ("select", "flexsurr.training.selection", "flexsurr.beam"),
+        ("train_map", "flexsurr.training.coefficient_fit", "flexsurr.beam"),
+        ("score_map", "flexsurr.cli.runs", "flexsurr.beam"),
         ("draw", "flexsurr.report.style", "flexsurr.training"),
     ],
 )

@@ -93,7 +93,7 @@ def test_editing_the_file_of_a_network_of_ones_own_trains_it_anew(copy_of_quick)
         (
             "flexsurr/beam/compiled.py",
             {"simulate", "statics", "validation", "manifest", "train", "responses", "evaluate"},
-            {"select", "accuracy", "fly"},
+            {"accuracy", "fly", "fly_randomly"},
         ),
         (
             "flexsurr/evaluation/timing.py",

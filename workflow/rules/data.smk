@@ -48,8 +48,8 @@ rule simulate:
         runtime=60,
     params:
         job=job("simulate", "study", "data", "shard"),
-        command=lambda w: plan.simulator(w.study),
-        code=lambda w: code(plan.simulator(w.study)),
+        command=lambda w: plan.command("simulate", w.study),
+        code=lambda w: code(plan.command("simulate", w.study)),
     message:
         "simulating shard {wildcards.shard} of {wildcards.study}, {wildcards.data}"
     shell:

@@ -11,6 +11,11 @@ onstart:
     shell("python -m flexsurr store --job {tracked:q} --output {STORE:q}")
 
 
+def run_command(rule, wildcards):
+    """The command by which `rule` makes a run: one for fields, one for maps."""
+    return plan.command(rule, plan.runs[wildcards.run_id].study)
+
+
 rule train:
     input:
         data=lambda w: expand(f"{RESULTS}/{{file}}", file=plan.trains_on(w.run_id)),
@@ -30,14 +35,15 @@ rule train:
         runtime=720,
     params:
         job=job("train", "run_id"),
-        code=code("train"),
+        command=lambda w: run_command("train", w),
+        code=lambda w: code(run_command("train", w)),
         data=lambda w, input: sorted({os.path.dirname(file) for file in input.data}),
         folder=f"{RESULTS}/runs/{{run_id}}",
         store=STORE,
     message:
         "training {wildcards.run_id}"
     shell:
-        "python -m flexsurr train --job {params.job:q} --data {params.data:q}"
+        "python -m flexsurr {params.command} --job {params.job:q} --data {params.data:q}"
         " --store {params.store:q} --folder {params.folder:q} > {log:q} 2>&1"
 
 
@@ -59,11 +65,12 @@ rule score:
         runtime=60,
     params:
         job=job("score", "run_id"),
-        code=code("score"),
+        command=lambda w: run_command("score", w),
+        code=lambda w: code(run_command("score", w)),
     message:
         "scoring {wildcards.run_id}"
     shell:
-        "python -m flexsurr score --job {params.job:q} --fit {input.fit:q} --weights {input.weights:q}"
+        "python -m flexsurr {params.command} --job {params.job:q} --fit {input.fit:q} --weights {input.weights:q}"
         " --best {input.best:q} --manifest {input.manifest:q} --output {output:q} > {log:q} 2>&1"
 
 

@@ -60,4 +60,4 @@ def job(rule, *keys):
 
 def code(command):
     """The digest of the code behind a command, so that editing it runs its jobs again."""
-    return code_digest(f"flexsurr.cli.{command}")
+    return code_digest(f"flexsurr.cli.{command.replace('-', '_')}")
