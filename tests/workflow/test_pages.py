@@ -39,7 +39,9 @@ QUIET = (
 )
 PATIENCE_S = 120
 CANTILEVER = Structure(**read_yaml(Path(__file__).parents[2] / "config/structures/cantilever.yaml"))
-OF_THE_CANTILEVER = [name for name, figure in FIGURES.items() if figure.shows(CANTILEVER)]
+OF_THE_CANTILEVER = [
+    name for name, figure in FIGURES.items() if "trajectories" in figure.sources and figure.shows(CANTILEVER)
+]
 
 
 @pytest.fixture(scope="module")
