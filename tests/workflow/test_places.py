@@ -1,4 +1,4 @@
-"""Names with hyphens, and folders with spaces in their names."""
+"""Names of studies, and folders with spaces in their names."""
 
 import shutil
 import subprocess
@@ -23,6 +23,24 @@ def test_a_study_with_a_hyphen_in_folders_with_spaces(make_project):
     (project.root / "my results").symlink_to("elsewhere")
     project.run_well("my results/evaluation/soft-beam/statics.parquet")
     assert (project.root / "elsewhere/evaluation/soft-beam/statics.parquet").is_file()
+
+
+def test_a_study_is_a_target_and_no_other_study_is_made_for_it(make_project):
+    project = make_project()
+    scheduled = project.scheduled("wing")
+    assert scheduled["draw"] == len(project.plan.figures("wing"))
+    assert scheduled["tabulate"] == len(project.plan.tables("wing"))
+    assert "fly" not in scheduled
+
+
+def test_a_study_cannot_be_called_like_a_rule(make_project):
+    project = make_project()
+    shutil.copy(project.root / "config/studies/cantilever.yaml", project.root / "config/studies/train.yaml")
+    project.change("config/config.yaml", "studies", ["train"])
+    code, output = project.run("--dry-run")
+    assert code != 0
+    assert "studies: 'train' is the name of a rule" in output
+    assert "Traceback" not in output
 
 
 @pytest.mark.parametrize(

@@ -94,18 +94,3 @@ rule fly_randomly:
         "python -m flexsurr fly-randomly --job {params.job:q} --selection {input.selection:q}"
         " --runs {params.runs:q} --flights {output.flights:q} --exceedances {output.exceedances:q}"
         " --cost {output.cost:q} --rows {output.rows:q} --limits {output.limits:q} > {log:q} 2>&1"
-
-
-if "airliner" in plan.of_samples:
-
-    rule airliner:
-        # Everything of the airliner.
-        input:
-            [
-                f"{RESULTS}/{kind}/airliner/{name}"
-                for kind, names in (
-                    ("figures", [f"{name}.svg" for name in plan.figures("airliner")]),
-                    ("tables", [f"{name}.html" for name in plan.tables("airliner")]),
-                )
-                for name in names
-            ],

@@ -110,3 +110,20 @@ rule join:
         "joining the tables of all studies"
     shell:
         "python -m flexsurr join --job {params.job:q} --inputs {input:q} --folder {params.folder:q} > {log:q} 2>&1"
+
+
+if taken := sorted({*STUDIES} & {"all", *(made.name for made in workflow.rules)}):
+    raise WorkflowError(
+        f"config/config.yaml: studies: {taken[0]!r} is the name of a rule; give the study another"
+    )
+
+
+for study in STUDIES:
+
+    rule:
+        # Everything of one study: snakemake <study>
+        name:
+            study
+        input:
+            expand(f"{RESULTS}/figures/{study}/{{name}}.svg", name=plan.figures(study)),
+            expand(f"{RESULTS}/tables/{study}/{{name}}.html", name=plan.tables(study)),
