@@ -36,7 +36,7 @@ include: "workflow/rules/evaluation.smk"
 include: "workflow/rules/report.smk"
 
 
-if plan.of_samples:
+if plan.of_source("samples"):
 
     include: "workflow/rules/flight.smk"
 

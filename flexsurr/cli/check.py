@@ -5,8 +5,9 @@ from pathlib import Path
 
 from flexsurr.cli.command import personal
 from flexsurr.config.settings import load
-from flexsurr.config.sources import ResolvedFiles
-from flexsurr.workflow.plan import Plan
+from flexsurr.workflow.plan import AnyPlan, Plan
+from flexsurr.workflow.sample_plan import SamplePlan
+from flexsurr.workflow.trajectory_plan import TrajectoryPlan
 
 CONFIG = Path("config/config.yaml")
 
@@ -28,17 +29,19 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def main(configfile: list[str], directory: Path) -> None:
     """Print a line for each study. Raises ConfigurationError with a line for each mistake."""
     plan = Plan(load(directory, [str(CONFIG), *configfile]))
-    for name, resolved in plan.studies.items():
-        runs = len(plan.runs_of(name))
-        if isinstance(resolved, ResolvedFiles):
-            print(f"{name}: {len(plan.sources(name))} files, {runs} runs")
-            continue
-        variants, datasets = len(plan.variants(name)), len(resolved.study.datasets)
-        print(
-            f"{name}: {resolved.structure.name}, {variants} variants, {datasets} datasets each, {runs} runs"
-        )
-    for name, samples in plan.of_samples.items():
-        print(f"{name}: {len(samples.runs)} runs")
+    for name, study in plan.studies.items():
+        print(f"{name}: {_data(study)}, {len(study.runs)} runs")
+
+
+def _data(study: AnyPlan) -> str:
+    """What a study learns from, in a few words."""
+    match study:
+        case TrajectoryPlan(variants=variants, resolved=resolved):
+            datasets = len(resolved.study.datasets)
+            return f"{resolved.structure.name}, {len(variants)} variants, {datasets} datasets each"
+        case SamplePlan():
+            return f"{len(study.datasets())} sets of samples"
+    return f"{len(study.sources)} files"
 
 
 if __name__ == "__main__":

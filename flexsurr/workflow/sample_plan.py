@@ -1,17 +1,14 @@
-"""The jobs of a study of samples: as `plan`, exactly the values that what each makes depends on."""
+"""The jobs of a study of samples."""
 
-import hashlib
-import json
 from functools import cached_property
-from typing import Any, get_args
+from typing import ClassVar, get_args
 
-from flexsurr.config.errors import ConfigurationError
 from flexsurr.config.sources import ResolvedSampleStudy
 from flexsurr.config.study import DEFAULT
 from flexsurr.config.trial import LatticeForm, Map, Sampling, Trial, sample_name
-from flexsurr.training.sweep import expand, run_id
-
-Job = dict[str, Any]
+from flexsurr.report.catalogue import OF_AIRCRAFT, Product
+from flexsurr.training.sweep import run_id
+from flexsurr.workflow.study_plan import Job, Run, StudyPlan, digest, trials_of
 
 _DRAWN = {
     sample_name(sampling, lattice): {"sampling": sampling, "lattice": lattice}
@@ -37,48 +34,46 @@ EVALUATED = (
 """The names of the files that its evaluation makes."""
 
 
-class SamplePlan:
-    """Every job of a study of samples. Raises ConfigurationError for a sweep whose combinations don't fit."""
+class SamplePlan(StudyPlan):
+    """Every job of a study of samples. Raises ConfigurationError for a sweep whose combinations don't fit.
+
+    The name of samples, `data`, stands where other studies have a variant.
+    """
+
+    source = "samples"
+    commands: ClassVar = {"simulate": "sample", "train": "train-map", "score": "score-map"}
 
     def __init__(self, resolved: ResolvedSampleStudy) -> None:
-        self.resolved, self.name = resolved, resolved.name
-        self._trials: dict[str, list[Trial]] = {}
-        problems = []
-        for sweep, content in resolved.sweeps.items():
-            try:
-                self._trials[sweep] = expand(content)
-            except ValueError as error:
-                problems.append(f"{resolved.study.sweeps[sweep]}: {error}")
-        if problems:
-            raise ConfigurationError(problems)
+        super().__init__(resolved.name, trials_of(resolved.sweeps, resolved.study.sweeps, {}))
+        self.resolved = resolved
 
     @cached_property
-    def sweeps(self) -> dict[str, dict[str, Map]]:
-        """The trials of each sweep by their run_id."""
-        return {sweep: dict(map(self._named, trials)) for sweep, trials in self._trials.items()}
+    def sweeps(self) -> dict[str, dict[str, Run]]:
+        """The runs of each sweep by their run_id."""
+        return {sweep: dict(map(self._named, trials)) for sweep, trials in self.trials.items()}
 
-    @cached_property
-    def runs(self) -> dict[str, Map]:
-        """All trials by their run_id."""
-        return {key: trial for trials in self.sweeps.values() for key, trial in trials.items()}
-
-    def _named(self, trial: Trial) -> tuple[str, Map]:
+    def _named(self, trial: Trial) -> tuple[str, Run]:
         assert isinstance(trial, Map)  # as every trial of its sweeps is
-        return run_id(trial, self.name, trial.dataset, self._split(trial.dataset)), trial
+        data = trial.dataset
+        return run_id(trial, self.name, data, self._split(data)), Run(self.name, data, DEFAULT, trial)
 
     @property
-    def shards(self) -> int:
-        """Number of shards of each set of samples."""
+    def evaluated(self) -> list[str]:
+        """The names of the files that its evaluation makes."""
+        return list(EVALUATED)
+
+    def shards(self, data: str) -> int:
+        """Number of shards of the samples called `data`."""
         return self.resolved.study.dataset.shards
 
     def files(self, data: str) -> list[str]:
         """The shards of the samples called `data`, below the results."""
         folder = f"datasets/{self.name}/{data}"
-        return [f"{folder}/shard-{shard:04d}.parquet" for shard in range(self.shards)]
+        return [f"{folder}/shard-{shard:04d}.parquet" for shard in range(self.shards(data))]
 
     def datasets(self) -> list[str]:
         """The names of all samples that a trial is fitted to."""
-        return list(dict.fromkeys(trial.dataset for trial in self.runs.values()))
+        return list(dict.fromkeys(run.variant for run in self.runs.values()))
 
     def simulate(self, data: str, shard: int | str) -> Job:
         """One shard of the samples called `data`, by its number."""
@@ -94,35 +89,46 @@ class SamplePlan:
 
     def dataset_hash(self, data: str) -> str:
         """The hash of every value that the samples called `data` depend on."""
-        return _hash(self._samples(data))
+        return digest(self._samples(data))
 
     def train(self, key: str) -> Job:
         """One fit."""
-        trial = self.runs[key]
+        run = self.runs[key]
         return {
             "run_id": key,
             "study": self.name,
-            "variant": trial.dataset,
-            "dataset": DEFAULT,
-            "data": self._split(trial.dataset),
-            "trial": trial.model_dump(mode="json"),
-            "shards": self.shards,
-            **self._read(trial.dataset),
+            "variant": run.variant,
+            "dataset": run.dataset,
+            "data": self._split(run.variant),
+            "trial": run.trial.model_dump(mode="json"),
+            "shards": self.shards(run.variant),
+            **self._read(run.variant),
         }
+
+    def trains_on(self, key: str) -> list[str]:
+        """The shards of a fit's samples, below the results."""
+        return self.files(self.runs[key].variant)
 
     def score(self, key: str) -> Job:
         """What training says of a fit is all that there is."""
         return {"study": self.name, "run_id": key}
 
+    def scored_on(self, key: str) -> list[str]:
+        """Nothing: held-out samples have been seen to in training."""
+        return []
+
     def select(self) -> Job:
         """The choice among the fits."""
-        sweeps = {sweep: list(trials) for sweep, trials in self.sweeps.items()}
-        return {"study": self.name, "sweeps": sweeps, "maps": True}
+        return {**super().select(), "maps": True}
+
+    def values_for(self, product: Product) -> Job:
+        """The aircraft, where a figure draws it."""
+        return {} if OF_AIRCRAFT.isdisjoint(product.reads) else {"aircraft": self.fly()}
 
     def accuracy(self) -> Job:
         """What the selected maps err by on the samples that each was fitted to."""
         samples = {data: self._read(data) for data in self.datasets()}
-        return {"study": self.name, "shards": self.shards, "samples": samples}
+        return {"study": self.name, "shards": self.resolved.study.dataset.shards, "samples": samples}
 
     def fly(self) -> Job:
         """Aircraft, flights, and the lattice and the limits as the samples had them."""
@@ -160,8 +166,4 @@ class SamplePlan:
         }
 
     def _split(self, data: str) -> str:
-        return _hash(self._read(data))
-
-
-def _hash(job: Job) -> str:
-    return hashlib.sha256(json.dumps(job, sort_keys=True).encode()).hexdigest()[:16]
+        return digest(self._read(data))

@@ -16,20 +16,20 @@ from flexsurr.training.tracking import read_store
 from flexsurr.workflow.plan import Plan
 
 ROOT = Path(__file__).parents[2]
-PLAN = Plan(load(ROOT, ["config/config.yaml", "config/presets/quick.yaml"])).of_samples["airliner"]
+PLAN = Plan(load(ROOT, ["config/config.yaml", "config/presets/quick.yaml"])).studies["airliner"]
 
 
 @pytest.fixture(scope="module")
 def results(tmp_path_factory) -> Path:
     """Everything the commands write, made in the order in which the rules make it."""
     root = tmp_path_factory.mktemp("results")
-    for name in {trial.dataset for trial in PLAN.runs.values()}:
-        for shard in range(PLAN.shards):
+    for name in PLAN.datasets():
+        for shard in range(PLAN.shards(name)):
             sample.main(PLAN.simulate(name, shard), shard_path(root, shard, name))
     store.main({"uri": None, "studies": ["airliner"]}, root / "mlflow" / "airliner.json")
-    for run_id, trial in PLAN.runs.items():
+    for run_id, run in PLAN.runs.items():
         folder = root / "runs" / run_id
-        train_map.main(PLAN.train(run_id), [root / trial.dataset], root / "mlflow" / "airliner.json", folder)
+        train_map.main(PLAN.train(run_id), [root / run.variant], root / "mlflow" / "airliner.json", folder)
         weights = (folder / "weights.npz", folder / "best.npz")
         score_map.main(PLAN.score(run_id), folder / "fit.json", *weights, [], folder / "metrics.json")
     choose(root / "runs", root, root / "selected.json")
@@ -59,7 +59,7 @@ def test_a_shard_comes_out_the_same_from_its_seed_and_number(results, tmp_path):
 def test_the_table_has_each_coefficient_once_for_each_model(results):
     table = pd.read_parquet(results / "accuracy.parquet")
     assert list(table.columns) == ["output", "train_nmse", "validation_nmse", "validation_r2", "model"]
-    assert set(table["model"]) == {trial.label for trial in PLAN.runs.values()}
+    assert set(table["model"]) == {run.trial.label for run in PLAN.runs.values()}
     for model in set(table["model"]):
         assert tuple(table.loc[table["model"] == model, "output"]) == COEFFICIENTS
     np.testing.assert_allclose(table["validation_r2"], 1.0 - table["validation_nmse"])

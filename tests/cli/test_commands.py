@@ -14,7 +14,8 @@ from flexsurr.cli import join
 from flexsurr.config.settings import load
 from flexsurr.storage import read_shard
 from flexsurr.workflow.job_files import write_job
-from flexsurr.workflow.plan import COMMANDS_OF_SAMPLES, Plan
+from flexsurr.workflow.plan import Plan
+from flexsurr.workflow.sample_plan import SamplePlan
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 PLAN = Plan(load(REPOSITORY, ["config/config.yaml", "config/presets/quick.yaml"]))
@@ -53,7 +54,7 @@ def run(*arguments: str) -> subprocess.CompletedProcess:
 
 def test_a_shard_depends_on_its_number_alone(tmp_path):
     """The second shard is the same whether or not there is a first, and however often it is made."""
-    job = write_job(tmp_path, "simulate", PLAN.simulate("cantilever", "hamiltonian", 1))
+    job = write_job(tmp_path, "simulate", PLAN.studies["cantilever"].simulate("hamiltonian", 1))
     paths = [tmp_path / "a.parquet", tmp_path / "b.parquet"]
     for path in paths:
         done = run("simulate", "--job", str(job), "--output", str(path))
@@ -61,13 +62,13 @@ def test_a_shard_depends_on_its_number_alone(tmp_path):
     assert paths[0].read_bytes() == paths[1].read_bytes()
     shard = read_shard(paths[0])
     assert (shard.metadata.first, shard.metadata.count) == (3, 3)
-    assert shard.metadata.seed == PLAN.studies["cantilever"].study.seed
+    assert shard.metadata.seed == PLAN.studies["cantilever"].resolved.study.seed
 
 
 def test_what_is_to_be_expected_is_one_line(tmp_path):
     rubbish = tmp_path / "shard-0000.parquet"
     rubbish.write_bytes(b"rubbish")
-    job = write_job(tmp_path, "manifest", PLAN.manifest("cantilever", "hamiltonian") | {"shards": 1})
+    job = write_job(tmp_path, "manifest", PLAN.studies["cantilever"].manifest("hamiltonian") | {"shards": 1})
     output = tmp_path / "manifest.json"
     done = run("manifest", "--job", str(job), "--folder", str(tmp_path), "--output", str(output))
     assert done.returncode == 1
@@ -87,7 +88,7 @@ def test_what_is_not_to_be_expected_leaves_its_traceback(tmp_path):
 @pytest.mark.parametrize("integrator", ["dop853_fixed", "scipy_radau"])
 def test_without_numbas_compiler_a_line_says_so(tmp_path, monkeypatch, integrator):
     monkeypatch.setenv("NUMBA_DISABLE_JIT", "1")
-    values = PLAN.simulate("cantilever", "hamiltonian", 0)
+    values = PLAN.studies["cantilever"].simulate("hamiltonian", 0)
     values["part"]["dataset"]["integrator"]["method"] = integrator
     job = write_job(tmp_path, "simulate", values)
     done = run("simulate", "--job", str(job), "--output", str(tmp_path / "shard-0000.parquet"))
@@ -138,7 +139,7 @@ def test_help_lists_every_command_of_the_rules_and_what_each_code_means():
     text = run("--help").stdout
     rules = "".join(path.read_text() for path in (REPOSITORY / "workflow" / "rules").glob("*.smk"))
     called = set(re.findall(r"python -m flexsurr ([a-z-]+)", rules)) | {
-        command for pair in COMMANDS_OF_SAMPLES.items() for command in pair
+        command for pair in SamplePlan.commands.items() for command in pair
     }
     assert called
     assert called | set(FOR_PEOPLE) == set(commands())
@@ -170,7 +171,7 @@ def test_the_list_of_commands_needs_no_library():
 def test_checking_says_what_there_is_to_do(tmp_path):
     done = run("check", "--configfile", "config/presets/quick.yaml")
     assert done.returncode == 0, done.stderr
-    runs = len(PLAN.runs_of("wing"))
+    runs = len(PLAN.studies["wing"].runs)
     assert f"wing: wing, 1 variants, 2 datasets each, {runs} runs" in done.stdout
 
 

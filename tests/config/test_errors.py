@@ -213,7 +213,7 @@ def test_a_study_may_have_hyphens_in_its_name(root):
     shutil.copy(root / STUDY, root / "config/studies/soft-beam.yaml")
     spoil(root, CONFIG, "studies", ["soft-beam"])
     plan = Plan(load(root, [CONFIG]))
-    assert plan.simulate("soft-beam", "hamiltonian", 0)["study"] == "soft-beam"
+    assert plan.job("simulate", "soft-beam", "hamiltonian", "0")["study"] == "soft-beam"
 
 
 def test_binary_rubbish_is_named(root):

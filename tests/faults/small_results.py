@@ -11,7 +11,7 @@ from flexsurr.workflow.plan import Plan
 REPOSITORY = Path(__file__).resolve().parents[2]
 PLAN = Plan(load(REPOSITORY, ["config/config.yaml", "config/presets/quick.yaml"]))
 STUDY, VARIANT = "cantilever", "hamiltonian"
-RUNS = [key for key in PLAN.runs_of(STUDY) if PLAN.runs[key].variant == VARIANT]
+RUNS = [key for key in PLAN.studies[STUDY].runs if PLAN.runs[key].variant == VARIANT]
 RUN, OTHER = (next(key for key in RUNS if key.startswith(kind)) for kind in ("polynomial", "hnn"))
 
 
@@ -30,7 +30,7 @@ class Results:
         return self.root / "runs" / RUN
 
     def job(self, name: str, *keys: str) -> dict:
-        job = getattr(PLAN, name)(*keys)
+        job = PLAN.job(name, *keys)
         write_job(self.root / "jobs", name, job)
         return job
 

@@ -18,10 +18,10 @@ FILES = {
     "learn_load": ["manifest", "polynomial", "network", "errors"],
 }
 JOBS = {
-    "simulate": lambda: PLAN.simulate(STUDY, VARIANT, 0),
-    "statics": lambda: PLAN.statics(STUDY),
-    "validate": lambda: PLAN.validation(STUDY),
-    "learn_load": lambda: PLAN.learn_load(STUDY, VARIANT),
+    "simulate": lambda: PLAN.studies[STUDY].simulate(VARIANT, 0),
+    "statics": lambda: PLAN.studies[STUDY].statics(),
+    "validate": lambda: PLAN.studies[STUDY].validation(),
+    "learn_load": lambda: PLAN.studies[STUDY].learn_load(VARIANT),
 }
 
 

@@ -15,8 +15,8 @@ ROOT = Path(__file__).resolve().parents[2]
 
 def test_a_job_is_plain_data_from_which_the_airliner_comes_back():
     plan = Plan(load(ROOT, ["config/config.yaml"]))
-    study = plan.of_samples["airliner"].resolved
-    job = json.loads(json.dumps(plan.fly("airliner")))
+    study = plan.studies["airliner"].resolved
+    job = json.loads(json.dumps(plan.studies["airliner"].fly()))
     plane = airliner_of(job)
     assert plane.settings == study.study.flight
     assert plane.limits == study.limits

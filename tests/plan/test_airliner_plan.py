@@ -22,7 +22,7 @@ SWEEP = "config/sweeps/airliner.yaml"
 
 
 def airliner(root: Path) -> SamplePlan:
-    return Plan(load(root, ["config/config.yaml"])).of_samples["airliner"]
+    return Plan(load(root, ["config/config.yaml"])).studies["airliner"]
 
 
 @pytest.fixture
@@ -41,13 +41,13 @@ def edit(root: Path, file: str, old: str, new: str) -> None:
 
 def test_shards_cover_all_samples_once():
     plan = airliner(ROOT)
-    jobs = [plan.simulate("sobol", shard) for shard in range(plan.shards)]
+    jobs = [plan.simulate("sobol", shard) for shard in range(plan.shards("sobol"))]
     numbers = [n for job in jobs for n in range(job["first"], job["first"] + job["count"])]
     assert numbers == list(range(plan.resolved.study.dataset.samples))
 
 
 def test_there_are_baselines_and_the_network_of_the_study():
-    trials = airliner(ROOT).runs.values()
+    trials = [run.trial for run in airliner(ROOT).runs.values()]
     assert {trial.architecture for trial in trials} == {"network", "linear", "quadratic"}
     networks = [trial for trial in trials if isinstance(trial, MapNetwork)]
     assert (75, "tanh", 250) in [(trial.hidden[0], trial.activation, trial.epochs) for trial in networks]

@@ -101,7 +101,7 @@ def test_one_trajectory_can_be_split_by_sample_only(root):
     (line,) = refusal(root)
     assert line.startswith(f"{STUDY}: files: hold one trajectory")
     change(root, STUDY, "split_by", "sample")
-    assert plan(root).manifest("spring", "files")["trajectories"] == 1
+    assert plan(root).studies["spring"].manifest("files")["trajectories"] == 1
 
 
 def test_states_that_are_no_pairs_take_a_network_without_structure(root):
@@ -124,11 +124,11 @@ def test_nothing_can_be_sampled_where_there_is_no_structure(root):
 
 
 def jobs(root: Path) -> dict[str, str]:
-    p = plan(root)
-    found = {"ingest": p.ingest("spring"), "manifest": p.manifest("spring", "files")}
-    found |= {"rollouts": p.rollouts("spring"), "rollout_cost": p.rollout_cost("spring")}
-    for key in p.runs:
-        found |= {f"train {key}": p.train(key), f"score {key}": p.score(key)}
+    spring = plan(root).studies["spring"]
+    found = {"ingest": spring.ingest(), "manifest": spring.manifest("files")}
+    found |= {"rollouts": spring.rollouts(), "rollout_cost": spring.rollout_cost()}
+    for key in spring.runs:
+        found |= {f"train {key}": spring.train(key), f"score {key}": spring.score(key)}
     return {name: json.dumps(job, sort_keys=True) for name, job in found.items()}
 
 
@@ -166,7 +166,7 @@ def test_other_data_are_other_runs(root):
 
 
 def test_the_manifest_says_where_the_data_come_from(root):
-    origin = plan(root).manifest("spring", "files")["origin"]
+    origin = plan(root).studies["spring"].manifest("files")["origin"]
     assert list(origin["files"]) == [DATA]
     assert len(origin["files"][DATA]) == 64
     assert origin["derivatives"] == "estimated"

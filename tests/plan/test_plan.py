@@ -10,6 +10,7 @@ import yaml
 from flexsurr.config.settings import load
 from flexsurr.evaluation.published import is_of_the_recipe
 from flexsurr.workflow.plan import Plan
+from flexsurr.workflow.trajectory_plan import TrajectoryPlan
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 QUICK = "config/presets/quick.yaml"
@@ -29,20 +30,27 @@ def plan(root: Path) -> Plan:
     return Plan(load(root, ["config/config.yaml", QUICK]))
 
 
+def beam(plan: Plan) -> TrajectoryPlan:
+    return plan.studies[BEAM]
+
+
 def jobs(root: Path) -> dict[str, str]:
     """Every job of the quick preset as text, by rule and wildcards."""
     p = plan(root)
-    found = {"store": p.store(), f"select {BEAM}": p.select(BEAM)}
-    found |= {f"statics {BEAM}": p.statics(BEAM), f"validation {BEAM}": p.validation(BEAM)}
-    found |= {f"train {key}": p.train(key) for key in p.runs}
-    found |= {f"score {key}": p.score(key) for key in p.runs}
-    for variant in p.variants(BEAM):
-        found[f"manifest {variant}"] = p.manifest(BEAM, variant)
-        found[f"respond {variant}"] = p.respond(BEAM, variant)
+    found = {"store": p.store(), f"select {BEAM}": beam(p).select()}
+    found |= {
+        f"statics {BEAM}": beam(p).statics(),
+        f"validation {BEAM}": beam(p).validation(),
+    }
+    found |= {f"train {key}": p.job("train", key) for key in p.runs}
+    found |= {f"score {key}": p.job("score", key) for key in p.runs}
+    for variant in beam(p).variants:
+        found[f"manifest {variant}"] = beam(p).manifest(variant)
+        found[f"respond {variant}"] = beam(p).respond(variant)
         for response in ("free", "forced"):
-            found[f"cost {variant} {response}"] = p.cost(BEAM, variant, response)
-        for shard in range(p.shards(BEAM, variant)):
-            found[f"simulate {variant} {shard}"] = p.simulate(BEAM, variant, shard)
+            found[f"cost {variant} {response}"] = beam(p).cost(variant, response)
+        for shard in range(beam(p).shards(variant)):
+            found[f"simulate {variant} {shard}"] = beam(p).simulate(variant, shard)
     return {name: json.dumps(job, sort_keys=True) for name, job in found.items()}
 
 
@@ -117,11 +125,14 @@ def test_a_new_value_of_the_sweep_adds_its_runs_and_leaves_the_others(root):
 
 def test_what_samples_configurations_needs_no_data_and_no_simulation(root):
     before, p = jobs(root), plan(root)
-    (free, *_) = p.select(BEAM)["sweeps"]["data_free"]
-    (trained, *_) = p.select(BEAM)["sweeps"]["default"]
-    assert p.trains_on(free) == []
-    assert p.trains_on(trained) == [f"datasets/{BEAM}/hamiltonian/manifest.json"]
-    assert (p.train(free)["dataset"], p.train(trained)["dataset"]) == ("configurations", "default")
+    (free, *_) = beam(p).select()["sweeps"]["data_free"]
+    (trained, *_) = beam(p).select()["sweeps"]["default"]
+    assert beam(p).trains_on(free) == []
+    assert beam(p).trains_on(trained) == [f"datasets/{BEAM}/hamiltonian/manifest.json"]
+    assert (beam(p).train(free)["dataset"], beam(p).train(trained)["dataset"]) == (
+        "configurations",
+        "default",
+    )
     for key, value in {"trajectories": 9, "duration_s": 0.2, "training_fraction": 0.7}.items():
         change(root, QUICK, f"{OVER}.dataset.{key}", value)
     assert jobs(root)[f"train {free}"] == before[f"train {free}"]
@@ -146,33 +157,36 @@ def test_a_further_dataset_is_drawn_by_its_own_seed_and_trained_on_by_the_sweep_
     change(root, STUDY, "trains_on.many", "many")
     p = plan(root)
     assert {name for name in before if before[name] != jobs(root)[name]} == {f"select {BEAM}"}
-    sweeps = p.select(BEAM)["sweeps"]
+    sweeps = beam(p).select()["sweeps"]
     assert len(sweeps["many"]) == len(sweeps["default"])
-    assert {p.runs[key].data for key in p.select(BEAM)["sweeps"]["many"]} == {
+    assert {p.runs[key].data for key in beam(p).select()["sweeps"]["many"]} == {
         "hamiltonian-many",
         "as_printed-many",
     }
-    assert p.shards(BEAM, "as_printed-many") == 1
-    usual, further = p.simulate(BEAM, "hamiltonian", 0), p.simulate(BEAM, "hamiltonian-many", 0)
+    assert beam(p).shards("as_printed-many") == 1
+    usual, further = (
+        beam(p).simulate("hamiltonian", 0),
+        beam(p).simulate("hamiltonian-many", 0),
+    )
     assert (further["count"], further["part"]["seed"], further["variant"]) == (20, 7, "hamiltonian")
     assert further["part"]["dataset"]["step_s"] == 0.05
     assert further["configuration"] != usual["configuration"]
-    assert p.manifest(BEAM, "hamiltonian-many")["seed"] == 7
+    assert beam(p).manifest("hamiltonian-many")["seed"] == 7
 
 
 def test_the_last_shard_holds_what_is_left(root):
     change(root, QUICK, f"{OVER}.dataset.trajectories", 7)
-    shards = [plan(root).simulate(BEAM, "hamiltonian", shard) for shard in range(3)]
+    shards = [plan(root).studies[BEAM].simulate("hamiltonian", shard) for shard in range(3)]
     assert [(job["first"], job["count"]) for job in shards] == [(0, 3), (3, 3), (6, 1)]
 
 
 def test_the_figure_of_architectures_sees_every_study_of_the_same_structure(root):
     change(root, "config/config.yaml", "studies", [BEAM, "wing", "wing_unit"])
     p = Plan(load(root, ["config/config.yaml"]))
-    both = [f"runs/{key}/metrics.json" for name in ("wing", "wing_unit") for key in p.runs_of(name)]
+    both = [f"runs/{key}/metrics.json" for name in ("wing", "wing_unit") for key in p.studies[name].runs]
     assert p.files("wing", "relatives") == p.files("wing_unit", "relatives") == both
-    assert len(set(both)) == 2 * len(p.runs_of("wing"))
-    assert len(p.files(BEAM, "relatives")) == len(p.runs_of(BEAM))
+    assert len(set(both)) == 2 * len(p.studies["wing"].runs)
+    assert len(p.files(BEAM, "relatives")) == len(beam(p).runs)
     assert "architecture_errors" in p.figures("wing")
     assert "architecture_errors" not in p.figures(BEAM)
 
@@ -184,12 +198,12 @@ def test_the_papers_preset_trains_its_recipes_on_its_data():
         (BEAM, ["hnn", "hnn", "mlp", "mlp"]),
         ("wing_unit", ["dissipative_hnn", "mlp"]),
     ):
-        runs = [p.runs[key] for key in p.runs_of(study)]
+        runs = [p.runs[key] for key in p.studies[study].runs]
         assert [run.trial.architecture for run in runs] == architectures
         assert {run.data for run in runs} == {"as_printed"}
-        dataset = p.studies[study].study.dataset
+        dataset = p.studies[study].resolved.study.dataset
         assert (dataset.split_by, dataset.integrator.method) == ("sample", "scipy_radau")
-        structure = p.studies[study].structure.name
+        structure = p.studies[study].resolved.structure.name
         for run in runs:
             trial = run.trial
             described = {"structure": structure, **trial.model_dump(mode="json"), "epoch_limit": trial.epochs}
@@ -197,8 +211,8 @@ def test_the_papers_preset_trains_its_recipes_on_its_data():
 
 
 def test_other_data_make_other_runs_and_leave_the_old_ones(root):
-    before = plan(root).runs_of(BEAM)
+    before = list(plan(root).studies[BEAM].runs)
     change(root, STRUCTURE, "elements", 12)
     assert set(before).isdisjoint(plan(root).runs)
     change(root, STRUCTURE, "elements", 10)
-    assert plan(root).runs_of(BEAM) == before
+    assert list(plan(root).studies[BEAM].runs) == before

@@ -140,8 +140,8 @@ def test_a_study_that_is_added_is_built_at_once(copy_of_quick, uri):
     copy_of_quick.change("config/config.yaml", "tracking.uri", uri)
     scheduled = copy_of_quick.scheduled()
     added = copy_of_quick.plan
-    assert scheduled["train"] == len(added.runs_of("wing_unit"))
-    assert scheduled["evaluate"] == 2 * len(added.variants("wing_unit"))
+    assert scheduled["train"] == len(added.studies["wing_unit"].runs)
+    assert scheduled["evaluate"] == 2 * len(added.studies["wing_unit"].variants)
     assert scheduled["join"] == 1
 
 

@@ -78,7 +78,7 @@ def wait_until_it_learns(project) -> list[int]:
 def results_of(project) -> dict[str, dict]:
     """Losses and weights of every run of the long sweep."""
     found = {}
-    for key in project.plan.runs_of(BEAM):
+    for key in project.plan.studies[BEAM].runs:
         folder = project.results / "runs" / key
         fit = json.loads((folder / "fit.json").read_text())
         with np.load(folder / "weights.npz") as weights:
@@ -95,7 +95,7 @@ def finishes_as_if_undisturbed(project, undisturbed) -> None:
     experiment = client.get_experiment_by_name(BEAM)
     assert client.search_runs([experiment.experiment_id], "attributes.status = 'RUNNING'") == []
     finished = client.search_runs([experiment.experiment_id], "attributes.status = 'FINISHED'")
-    assert set(project.plan.runs_of(BEAM)) <= {run.data.tags.get(RUN_KEY) for run in finished}
+    assert set(project.plan.studies[BEAM].runs) <= {run.data.tags.get(RUN_KEY) for run in finished}
     assert [path for path in project.results.rglob(".*") if re.search(r"\.part$|\.\d+$", path.name)] == []
     assert list(project.results.glob("runs/*/checkpoint*")) == []
     assert "Nothing to be done" in project.run_well(*TARGETS)

@@ -211,7 +211,7 @@ def served(quick, tmp_path_factory):
 
 
 def test_the_page_shows_the_sweep_and_its_trials(quick, served, browser):
-    runs = quick.plan.runs_of("cantilever")
+    runs = quick.plan.studies["cantilever"].runs
     browser.get(f"{served.address}/#/experiments/{served.experiment}/runs")
     # the parent, with its trials folded away below it
     wait_for(browser, "sweeps of cantilever", f"{len(runs) + 1} matching runs")

@@ -60,7 +60,7 @@ def test_the_best_surrogates_stand_in_the_costs_of_forced_responses_under_learne
     assert set(learned["response"]) == {"forced"}
     assert (learned["diverged"] == 0).all()
     for study in (BEAM, "wing"):
-        for variant in quick.plan.variants(study):
+        for variant in quick.plan.studies[study].variants:
             names = learned[(learned["study"] == study) & (learned["variant"] == variant)]["model"].unique()
             assert [name.endswith(("_learned_load", "_network_load")) for name in names] == [True, True]
 
@@ -120,7 +120,7 @@ def test_one_surrogate_of_each_architecture_is_selected(quick):
 
 def test_a_network_of_ones_own_goes_all_the_way(quick):
     name = "examples/my_models.py:Oscillators"
-    for variant in quick.plan.variants(BEAM):
+    for variant in quick.plan.studies[BEAM].variants:
         run = json.loads((quick.results / "selected" / f"{BEAM}.json").read_text())[variant][name]
         assert run["run_id"].startswith("Oscillators-")
         assert (quick.results / "runs" / run["run_id"] / "weights.npz").is_file()
@@ -157,8 +157,8 @@ def test_the_runs_of_every_study_stand_in_one_table_with_all_their_settings(quic
     training = pd.read_csv(quick.results / "tables" / "training.csv")
     assert set(training["study"]) == {BEAM, "wing", "airliner"}
     of_maps = training[training["study"] == "airliner"].set_index("run_id")
-    for key, trial in quick.plan.of_samples["airliner"].runs.items():
-        row = of_maps.loc[key]
+    for key, run in quick.plan.studies["airliner"].runs.items():
+        row, trial = of_maps.loc[key], run.trial
         assert (row["sampling"], row["lattice"], row["optimiser"]) == (
             trial.sampling,
             trial.lattice,

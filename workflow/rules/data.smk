@@ -13,7 +13,7 @@ wildcard_constraints:
 
 rule ingest:
     input:
-        lambda w: plan.sources(w.study),
+        lambda w: plan.studies[w.study].sources,
     output:
         f"{RESULTS}/datasets/{{study}}/files/shard-0000.parquet",
     log:
@@ -48,8 +48,8 @@ rule simulate:
         runtime=60,
     params:
         job=job("simulate", "study", "data", "shard"),
-        command=lambda w: plan.command("simulate", w.study),
-        code=lambda w: code(plan.command("simulate", w.study)),
+        command=lambda w: plan.studies[w.study].command("simulate"),
+        code=lambda w: code(plan.studies[w.study].command("simulate")),
     message:
         "simulating shard {wildcards.shard} of {wildcards.study}, {wildcards.data}"
     shell:
@@ -60,7 +60,7 @@ rule manifest:
     input:
         shards=lambda w: expand(
             f"{RESULTS}/datasets/{w.study}/{w.data}/shard-{{shard:04d}}.parquet",
-            shard=range(plan.shards(w.study, w.data)),
+            shard=range(plan.studies[w.study].shards(w.data)),
         ),
     output:
         f"{RESULTS}/datasets/{{study}}/{{data}}/manifest.json",

@@ -32,7 +32,7 @@ rule responses:
 rule learn_load:
     input:
         lambda w: (
-            f"{RESULTS}/datasets/{w.study}/{plan.load_data(w.study, w.variant)}/manifest.json"
+            f"{RESULTS}/datasets/{w.study}/{plan.studies[w.study].load_data(w.variant)}/manifest.json"
         ),
     output:
         polynomial=f"{RESULTS}/evaluation/{{study}}/{{variant}}/learned_load.npz",

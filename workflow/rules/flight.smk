@@ -8,8 +8,8 @@ rule accuracy:
             f"{RESULTS}/{{file}}",
             file=[
                 file
-                for data in plan.of_samples[w.study].datasets()
-                for file in plan.of_samples[w.study].files(data)
+                for data in plan.studies[w.study].datasets()
+                for file in plan.studies[w.study].files(data)
             ],
         ),
     output:

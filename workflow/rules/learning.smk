@@ -13,12 +13,14 @@ onstart:
 
 def run_command(rule, wildcards):
     """The command by which `rule` makes a run: one for fields, one for maps."""
-    return plan.command(rule, plan.runs[wildcards.run_id].study)
+    return plan.study_of(wildcards.run_id).command(rule)
 
 
 rule train:
     input:
-        data=lambda w: expand(f"{RESULTS}/{{file}}", file=plan.trains_on(w.run_id)),
+        data=lambda w: expand(
+            f"{RESULTS}/{{file}}", file=plan.study_of(w.run_id).trains_on(w.run_id)
+        ),
     output:
         parameters=f"{RESULTS}/runs/{{run_id}}/parameters.json",
         weights=f"{RESULTS}/runs/{{run_id}}/weights.npz",
@@ -52,7 +54,9 @@ rule score:
         fit=rules.train.output.fit,
         weights=rules.train.output.weights,
         best=rules.train.output.best,
-        manifest=lambda w: expand(f"{RESULTS}/{{file}}", file=plan.scored_on(w.run_id)),
+        manifest=lambda w: expand(
+            f"{RESULTS}/{{file}}", file=plan.study_of(w.run_id).scored_on(w.run_id)
+        ),
     output:
         f"{RESULTS}/runs/{{run_id}}/metrics.json",
     log:
@@ -77,7 +81,8 @@ rule score:
 rule select:
     input:
         metrics=lambda w: expand(
-            f"{RESULTS}/runs/{{run_id}}/metrics.json", run_id=plan.runs_of(w.study)
+            f"{RESULTS}/runs/{{run_id}}/metrics.json",
+            run_id=plan.studies[w.study].runs,
         ),
     output:
         f"{RESULTS}/selected/{{study}}.json",

@@ -53,7 +53,7 @@ def job(rule, *keys):
 
     def path(wildcards):
         values = [wildcards[key] for key in keys]
-        return write("/".join([rule, "-".join(values)]), getattr(plan, rule)(*values))
+        return write("/".join([rule, "-".join(values)]), plan.job(rule, *values))
 
     return path
 
