@@ -26,22 +26,32 @@ def main() -> None:
     if name == "--version":
         print(__version__)
         sys.exit()
-    if name not in commands():
+    if not _module(name).isidentifier() or _purpose(COMMANDS / f"{_module(name)}.py") is None:
         print(f"flexsurr: no command {name!r}; flexsurr --help lists them", file=sys.stderr)
         sys.exit(2)
     del sys.argv[1]
     # A command is its module run as a script, so nothing is imported that it does not need.
-    runpy.run_module(f"flexsurr.cli.{name.replace('-', '_')}", run_name="__main__", alter_sys=True)
+    runpy.run_module(f"flexsurr.cli.{_module(name)}", run_name="__main__", alter_sys=True)
 
 
 def commands() -> dict[str, str]:
     """What each command does in one line, by its name; read from the sources, which need not be imported."""
-    found = {}
-    for path in sorted(COMMANDS.glob("*.py")):
-        tree = ast.parse(path.read_bytes())
-        if any(isinstance(node, ast.If) and "__main__" in ast.unparse(node.test) for node in tree.body):
-            found[path.stem.replace("_", "-")] = (ast.get_docstring(tree) or "").splitlines()[0]
-    return found
+    purposes = {path.stem.replace("_", "-"): _purpose(path) for path in sorted(COMMANDS.glob("*.py"))}
+    return {name: purpose for name, purpose in purposes.items() if purpose is not None}
+
+
+def _purpose(path: Path) -> str | None:
+    """The first line of a module that can be run as a script; None for any other, or where there is none."""
+    if not path.is_file():
+        return None
+    tree = ast.parse(path.read_bytes())
+    if not any(isinstance(node, ast.If) and "__main__" in ast.unparse(node.test) for node in tree.body):
+        return None
+    return (ast.get_docstring(tree) or "").split("\n")[0]
+
+
+def _module(name: str) -> str:
+    return name.replace("-", "_")
 
 
 def overview() -> str:
