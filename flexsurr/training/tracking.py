@@ -206,7 +206,10 @@ def tracked(store: Store | None, study: str, run_key: str, parameters: Mapping[s
 
 @contextmanager
 def _signals_wait() -> Iterator[None]:
-    """Heed SIGTERM and Ctrl-C after the block: either in the middle would leave a run RUNNING for ever."""
+    """Heed SIGTERM and Ctrl-C after the block: either in the middle would leave a run RUNNING for ever.
+
+    Blocks may stand in one another; the outermost raises what came.
+    """
     if threading.current_thread() is not threading.main_thread():
         yield  # signals are the main thread's, and only it may say what they do
         return
@@ -254,11 +257,15 @@ class _Page:
         self._connect()
 
     def attempt(self, action: Callable[[MlflowClient, Store], Any]) -> Any:
-        """The result of `action`; None where there is no store, or trouble now, or has been."""
+        """The result of `action`; None where there is no store, or trouble now, or has been.
+
+        Signals wait: one that breaks into a write leaves the database locked until the process has ended.
+        """
         if self._client is None or self._store is None:
             return None
         try:
-            return action(self._client, self._store)
+            with _signals_wait():
+                return action(self._client, self._store)
         # The database may be deleted, locked or full, the server away: nothing of it is worth a result.
         except Exception as error:
             _warn(f"trouble with {self._store.uri}", error)
@@ -266,10 +273,12 @@ class _Page:
             return None
 
     def insist(self, action: Callable[[MlflowClient, Store], Any]) -> Any:
-        """`attempt`, once more even after trouble with a file; a server is not waited for twice."""
+        """`attempt`, once more after trouble with a file, even this one; a server is not waited for twice."""
+        result = self.attempt(action)
         if self._client is None and self._store is not None and self._store.uri.startswith("sqlite:"):
             self._connect()
-        return self.attempt(action)
+            result = self.attempt(action)
+        return result
 
     def _connect(self) -> None:
         if self._store is None:

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 from mlflow import MlflowClient
+from sqlalchemy import Engine, event
 
 from flexsurr.training import tracking
 from flexsurr.training.tracking import (
@@ -91,7 +92,15 @@ def test_a_job_told_to_stop_ends_its_run(made, stop):
     assert run_of(made, key).info.status == "KILLED"
 
 
-@pytest.mark.parametrize("moment", ["_start", "_end"])
+def tell_everything(store, key, before_the_end=lambda: None):
+    with tracked(store, "cantilever", key, {}) as trial:
+        trial.epoch(1, 1.0, 2.0)
+        trial.send()
+        before_the_end()
+        trial.keep({"train_nmse": 1.0}, {}, [])
+
+
+@pytest.mark.parametrize("moment", ["_start", "_send", "_keep", "_end"])
 def test_a_signal_in_the_middle_of_writing_waits(made, monkeypatch, moment):
     """At its worst moment: what was begun is finished, and the signal is heeded right after."""
     whole = getattr(tracking, moment)
@@ -105,12 +114,33 @@ def test_a_signal_in_the_middle_of_writing_waits(made, monkeypatch, moment):
     monkeypatch.setattr(tracking, moment, interrupted)
     before = signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(143))
     try:
-        with pytest.raises(SystemExit), tracked(made, "cantilever", f"hnn{moment}", {}):
-            pass
+        with pytest.raises(SystemExit):
+            tell_everything(made, f"hnn{moment}")
     finally:
         signal.signal(signal.SIGTERM, before)
-    ended = {"_start": "KILLED", "_end": "FINISHED"}
+    ended = {"_start": "KILLED", "_send": "KILLED", "_keep": "KILLED", "_end": "FINISHED"}
     assert run_of(made, f"hnn{moment}").info.status == ended[moment]
+
+
+def test_a_signal_within_a_transaction_waits_for_its_end(made):
+    """One that broke into it could leave the database locked, and the run RUNNING."""
+    statements: list[str] = []
+
+    def interrupting(connection, cursor, statement, parameters, context, executemany):
+        if statement.startswith(("INSERT", "UPDATE")) and len(statements) < 3:
+            statements.append(statement)
+            os.kill(os.getpid(), signal.SIGTERM)
+
+    before = signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(143))
+    try:
+        with pytest.raises(SystemExit):
+            tell_everything(made, "hnn-8", lambda: event.listen(Engine, "after_cursor_execute", interrupting))
+    finally:
+        event.remove(Engine, "after_cursor_execute", interrupting)
+        signal.signal(signal.SIGTERM, before)
+    assert statements != []
+    assert run_of(made, "hnn-8").info.status == "KILLED"
+    assert run_of(made, "hnn-8").data.metrics["train_nmse"] == 1.0
 
 
 def test_a_run_left_running_is_removed_when_its_job_starts_again(made):

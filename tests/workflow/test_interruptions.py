@@ -22,7 +22,7 @@ spaces:
     hidden: [[8]]
     activation: [tanh]
     optimiser: [adam]
-    epochs: [150]
+    epochs: [40000]
     batch_size: [8]
     learning_rate: [1.0e-3]
 """
