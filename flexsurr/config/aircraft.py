@@ -36,47 +36,64 @@ class Published(Record):
     """What the paper of the study says of the aircraft; the model is held against it."""
 
     source: Source
+    """Where its numbers come from: the paper of the study, another's tables, another's plots, or nowhere in
+    public.
+    """
     wing_span_m: Positive
+    """From tip to tip [m]; the sections of the wing add up to it."""
     fuselage_length_m: Positive
+    """From nose to tail [m]."""
     mass_kg: Positive
+    """Mass of everything [kg]; the parts under mass add up to it."""
 
 
 class Reference(Record):
     """Reference quantities of the coefficients; the span is the published one."""
 
     source: Source
+    """Where its numbers come from: the paper of the study, another's tables, another's plots, or nowhere in
+    public.
+    """
     area_m2: Positive
+    """S, by which forces are divided [m²]."""
     chord_m: Positive
+    """c, by which the pitching moment is divided [m]."""
 
 
 class Section(Record):
-    """A trapezoid of a lifting surface: first and last value of chord and twist, sweep of its leading edge.
-
-    `length_m` is measured along the surface, in the plane that its dihedral turns.
-    """
+    """A trapezoid of a lifting surface."""
 
     length_m: Positive
+    """Along the surface, in the plane that its dihedral turns [m]."""
     chord_m: tuple[Positive, Positive]
+    """Chord at its inner and outer end [m]; the outer is the inner one of the next section."""
     sweep_deg: Angle
+    """Sweep of the leading edge, positive aft [°]."""
     dihedral_deg: Angle = 0.0
+    """Dihedral, positive upwards [°]."""
     twist_deg: tuple[Angle, Angle] = (0.0, 0.0)
+    """Added to the incidence, at its inner and outer end, positive leading edge up [°]."""
 
 
 class Surface(Record):
-    """A lifting surface: trapezoids from the root outwards, and the line its beam follows.
-
-    `root_m` is the leading-edge point of the first section. `elastic_axis` is a fraction of the chord:
-    one value for the whole beam, or one at its start and one at the outer end of each section it
-    crosses, linear in between. `beam_starts_at_m` is y of its first node (height above the root for the
-    vertical tail).
-    """
+    """A lifting surface: trapezoids from the root outwards, and the line its beam follows."""
 
     source: Source
+    """Where its numbers come from: the paper of the study, another's tables, another's plots, or nowhere in
+    public.
+    """
     root_m: Point
+    """x, y and z of the leading edge of the first section [m]."""
     incidence_deg: Angle = 0.0
+    """Incidence of all of it, positive leading edge up [°]."""
     sections: Annotated[tuple[Section, ...], Field(min_length=1)]
+    """From the root outwards."""
     elastic_axis: Annotated[tuple[Fraction, ...], Field(min_length=1)]
+    """Its beam's place as a fraction of the chord: one value for all of it, or one at the beam's start and
+    one at the outer end of each section from there on, linear in between.
+    """
     beam_starts_at_m: NotNegative = 0.0
+    """y of the beam's first node; on the vertical tail its height above the root [m]."""
 
     @model_validator(mode="after")
     def _chords_meet(self) -> Self:
@@ -98,8 +115,11 @@ class Surfaces(Record):
     """Wing and tails; the wing and the horizontal tail have a left side that mirrors the right."""
 
     wing: Surface
+    """The right half; the left mirrors it."""
     horizontal_tail: Surface
+    """The right half; the left mirrors it."""
     vertical_tail: Surface
+    """Upwards from its root."""
 
     @model_validator(mode="after")
     def _beams_have_axes(self) -> Self:
@@ -121,11 +141,14 @@ class Surfaces(Record):
 
 
 class ControlSurface(Record):
-    """A flap behind a hinge: `hinge` a fraction of the chord, `span` fractions of the surface's semi-span."""
+    """A flap behind a hinge."""
 
     surface: str
+    """What it is part of: wing, horizontal_tail or vertical_tail; one control surface on each."""
     hinge: Annotated[float, Field(ge=0.0, lt=1.0)]
+    """Fraction of the chord ahead of the hinge."""
     span: tuple[Fraction, Fraction]
+    """Where it begins and ends, as fractions of the semi-span."""
 
     @field_validator("surface")
     @classmethod
@@ -145,10 +168,17 @@ class ControlSurfaces(Record):
     """Elevator and aileron (a left and a right one each), rudder, and the surface i_t turns as a whole."""
 
     source: Source
+    """Where its numbers come from: the paper of the study, another's tables, another's plots, or nowhere in
+    public.
+    """
     elevator: ControlSurface
+    """A left and a right half."""
     aileron: ControlSurface
+    """A left and a right one."""
     rudder: ControlSurface
+    """One."""
     trimmed_surface: Literal["horizontal_tail"]
+    """What turns as a whole to trim."""
 
     @model_validator(mode="after")
     def _one_on_each_surface(self) -> Self:
@@ -175,37 +205,55 @@ class ControlSurfaces(Record):
 
 
 class Fuselage(Record):
-    """A body of revolution about a straight line, for its beam and for the moment of its flow (Munk).
-
-    `fullness` is its volume over that of its circumscribed cylinder.
-    """
+    """A body of revolution about a straight line, for its beam and for the moment of its flow (Munk)."""
 
     source: Source
+    """Where its numbers come from: the paper of the study, another's tables, another's plots, or nowhere in
+    public.
+    """
     diameter_m: Positive
+    """Diameter of the cylinder about it [m]."""
     axis_z_m: float
+    """Height of its axis, positive up [m]."""
     fullness: Annotated[float, Field(gt=0.0, le=1.0)]
+    """Its volume over that of the cylinder about it."""
 
 
 class Aerodynamics(Record):
     """What the lattice does not know."""
 
     source: Source
+    """Where its numbers come from: the paper of the study, another's tables, another's plots, or nowhere in
+    public.
+    """
     parasite_drag_coefficient: NotNegative
+    """Drag without lift over q̄ S, at Mach 0.7 and 10 km; elsewhere it follows the skin friction of a plate.
+    """
 
 
 class Aircraft(Record):
     """An aircraft, with everything its stick model, its lattice and its flight need."""
 
     name: str
+    """What results and errors call it."""
     published: Published
+    """What the model is held against."""
     reference: Reference
+    """Of the coefficients."""
     surfaces: Surfaces
+    """Wing and tails."""
     control_surfaces: ControlSurfaces
+    """What the pilot moves."""
     fuselage: Fuselage
+    """The body."""
     stiffness: Stiffness
+    """Of its beams."""
     mass: Masses
+    """Of its parts."""
     aerodynamics: Aerodynamics
+    """What the lattice does not know."""
     structural_damping_ratio: Annotated[float, Field(ge=0.0, lt=1.0)]
+    """Damping of every elastic mode over the critical damping."""
 
     @model_validator(mode="after")
     def _agrees_with_itself(self) -> Self:

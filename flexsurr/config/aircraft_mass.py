@@ -13,18 +13,25 @@ Fraction = Annotated[float, Field(gt=0.0, le=1.0)]
 class Engine(Record):
     """Each of two engines, a point mass that is a cylinder in its moments of inertia.
 
-    `y_m` is its place to the side; it sits ahead of the wing's elastic axis there and below it. The pylon
-    runs forward, below the elastic axis, to the two hangers that carry the nacelle.
+    The pylon runs forward, below the wing's elastic axis, to the two hangers that carry the nacelle.
     """
 
     mass_kg: Positive
+    """Mass of each [kg]."""
     y_m: Positive
+    """How far to the side of the plane of symmetry [m]."""
     ahead_of_elastic_axis_m: float
+    """Ahead of the wing's elastic axis there [m]."""
     below_elastic_axis_m: float
+    """Below it, below the pylon too [m]."""
     length_m: Positive
+    """Length of the cylinder [m]."""
     diameter_m: Positive
+    """Diameter of the cylinder [m]."""
     pylon_below_elastic_axis_m: Positive
+    """How far the pylon runs below the elastic axis [m]."""
     hangers_ahead_of_elastic_axis_m: tuple[Positive, Positive]
+    """Forward and aft hanger, ahead of the elastic axis and on both sides of the engine's centre [m]."""
 
     @model_validator(mode="after")
     def _hangs_between_its_hangers(self) -> Self:
@@ -46,15 +53,20 @@ class PointMass(Record):
     """A mass on the axis of the fuselage."""
 
     mass_kg: Positive
+    """Its mass [kg]."""
     x_m: Positive
+    """Aft of the nose [m]."""
 
 
 class SpreadMass(Record):
     """A mass spread evenly over a length of the fuselage, with a radius of gyration in roll."""
 
     mass_kg: Positive
+    """Its mass [kg]."""
     x_m: tuple[float, float]
+    """From where to where, aft of the nose [m]."""
     radius_of_gyration_m: NotNegative
+    """In roll, about its own axis [m]."""
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:
@@ -64,36 +76,47 @@ class SpreadMass(Record):
 
 
 class CentredMass(Record):
-    """A mass in the shell of the whole fuselage, as x^(a−1) (L−x)^(b−1).
-
-    `taper` is a, from 1 (does not thin out at the nose); b puts the centroid at `centroid_x_m`.
-    """
+    """A mass in the shell of the whole fuselage, spread as x^(a−1) (L−x)^(b−1) from the nose."""
 
     mass_kg: Positive
+    """Its mass [kg]."""
     centroid_x_m: Positive
+    """Aft of the nose [m]; b follows from it."""
     taper: Annotated[float, Field(ge=1.0)]
+    """a: 1 does not thin out at the nose."""
 
 
 class Masses(Record):
-    """Everything the aircraft weighs.
-
-    Wing and tails are spread as their chord squared; fuel as the wing's out to `fuel_to_semi_span`.
-    The centre of gravity of a section of wing or tail and its radius of gyration are fractions of the chord.
-    """
+    """Everything the aircraft weighs."""
 
     source: Literal["published", "transcribed", "digitised", "assumed"]
+    """Where its numbers come from: the paper of the study, another's tables, another's plots, or nowhere in
+    public.
+    """
     wing_structure_kg: Positive
+    """Mass of both halves, spread as the chord squared [kg]."""
     fuel_kg: Positive
+    """Mass of the fuel in both halves, spread likewise [kg]."""
     fuel_to_semi_span: Fraction
+    """Fraction of the semi-span that the fuel reaches to."""
     engine: Engine
+    """Each of two."""
     horizontal_tail_kg: Positive
+    """Mass of both halves, spread as the chord squared [kg]."""
     vertical_tail_kg: Positive
+    """Its mass, spread likewise [kg]."""
     main_gear: PointMass
+    """On the fuselage's axis."""
     nose_gear: PointMass
+    """On the fuselage's axis."""
     payload: SpreadMass
+    """In the fuselage."""
     fuselage_and_systems: CentredMass
+    """All the rest."""
     section_centre_of_gravity: Fraction
+    """Of sections of wing and tails, as a fraction of the chord from the leading edge."""
     section_radius_of_gyration: Fraction
+    """Of these sections, over the chord."""
 
     @property
     def total_kg(self) -> float:

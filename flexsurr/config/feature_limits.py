@@ -18,8 +18,11 @@ class FeatureLimit(Record):
     """From `low` to `high`, and why so far."""
 
     low: float
+    """Least value."""
     high: float
+    """Largest value, above the least."""
     reason: Annotated[str, Field(min_length=1)]
+    """Why so far: a sentence for the reader."""
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:
@@ -35,20 +38,37 @@ class FeatureLimits(Record):
     """A limit for each of the 25 inputs of the aerodynamics, in their order; angles in degrees here."""
 
     mach: FeatureLimit
+    """Mach number, above 0 and below 0.95."""
     altitude_m: FeatureLimit
+    """Altitude in the standard atmosphere, 0 to 20,000 [m]."""
     alpha_deg: FeatureLimit
+    """Angle of attack, positive nose up [°]."""
     beta_deg: FeatureLimit
+    """Sideslip, positive where the air comes from the right [°]."""
     p_over_V_rad_m: FeatureLimit
+    """Roll rate over airspeed, positive right wing down [rad/m]."""
     q_over_V_rad_m: FeatureLimit
+    """Pitch rate over airspeed, positive nose up [rad/m]."""
     r_over_V_rad_m: FeatureLimit
+    """Yaw rate over airspeed, positive nose right [rad/m]."""
     i_t_deg: FeatureLimit
+    """Incidence of the horizontal tail, positive leading edge up [°]."""
     delta_e_left_deg: FeatureLimit
+    """Left elevator, positive trailing edge down [°]."""
     delta_e_right_deg: FeatureLimit
+    """Right elevator, positive trailing edge down [°]."""
     delta_a_left_deg: FeatureLimit
+    """Left aileron, positive trailing edge down [°]."""
     delta_a_right_deg: FeatureLimit
+    """Right aileron, positive trailing edge down [°]."""
     delta_r_deg: FeatureLimit
+    """Rudder, positive trailing edge left [°]."""
     eta: SixLimits
+    """Amplitudes of the modes that the aerodynamics feels, mass-normalised, in the order of aerodynamic_modes
+    [kg^½ m].
+    """
     eta_dot_over_V: SixLimits
+    """Their rates over the airspeed [kg^½]."""
 
     def deflection_deg(self, control: Control) -> float:
         """How far a doublet of `control` may go to either side within its limits."""

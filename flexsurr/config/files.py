@@ -14,15 +14,18 @@ Word = Annotated[str, Field(min_length=1)]
 
 
 class StateColumn(Record):
-    """A state: its `column`, its `unit`, and the column of its time `derivative` [unit/s] if there is one.
-
-    `name` is what results call it; the column's name where none is given.
-    """
+    """A state, and where it stands."""
 
     column: Word
+    """The column's name."""
     unit: Word
+    """Its unit, as results show it."""
     derivative: Word | None = None
+    """The column of its time derivative, in that unit per second. None: estimated by the filter. For every
+    state or for none.
+    """
     name: Word | None = None
+    """What results call the state. None: as the column."""
 
     @property
     def called(self) -> str:
@@ -31,34 +34,38 @@ class StateColumn(Record):
 
 
 class ForceColumn(Record):
-    """An input: a generalised force, in the unit of the momentum that it acts on per second."""
+    """An input: a generalised force."""
 
     column: Word
+    """The column's name."""
     unit: Word
+    """Its unit: that of the momentum per second."""
 
 
 class Pair(Record):
-    """A generalised coordinate q and its momentum p, and the recorded `force` that acts on p, if any.
-
-    The surrogate learns ẋ = f(x), where ṗ is f and the force together.
-    """
+    """A generalised coordinate q and its momentum p."""
 
     q: StateColumn
+    """The generalised coordinate."""
     p: StateColumn
+    """Its momentum."""
     force: ForceColumn | None = None
+    """The recorded force that acts on the momentum, positive where it adds to ṗ. The surrogate learns ẋ =
+    f(x), where ṗ is f and the force together.
+    """
 
 
 class Columns(Record):
-    """Which column of a table, or array of an NPZ archive, is what.
-
-    `t` is the time [s]. `trajectory` says which trajectory a row is of; without it each file is one.
-    The states are `pairs` (q, p), which every architecture takes, or any `states`, which an MLP takes.
-    """
+    """Which column of a table, or array of an NPZ archive, is what."""
 
     t: Word = "t"
+    """The time [s]."""
     trajectory: Word | None = None
+    """Says which trajectory a row is of. None: each file is one."""
     pairs: tuple[Pair, ...] = ()
+    """The states as coordinates and their momenta, which every architecture takes."""
     states: tuple[StateColumn, ...] = ()
+    """Or any states, which only an mlp takes. One of the two is given."""
 
     @model_validator(mode="after")
     def _one_kind_of_states(self) -> Self:
@@ -133,15 +140,18 @@ class Columns(Record):
 
 
 class Filter(Record):
-    """The Savitzky–Golay filter: polynomials of `order` through the nearest `window` samples of a trajectory.
-
-    Their slopes are the derivatives that the files lack. With `smooth_states` their values are the states.
-    """
+    """The Savitzky–Golay filter: polynomials through the nearest samples of a trajectory."""
 
     kind: Literal["savitzky_golay"] = "savitzky_golay"
+    """Savitzky and Golay's."""
     window: Annotated[int, Field(ge=3)] = 15
+    """Samples that a polynomial goes through: odd, more than `order`."""
     order: Annotated[int, Field(ge=1)] = 3
+    """Degree of the polynomials."""
     smooth_states: bool = True
+    """Whether the polynomials' values replace the states; their slopes are the derivatives that the files
+    lack either way.
+    """
 
     @model_validator(mode="after")
     def _the_window_determines_the_polynomial(self) -> Self:
@@ -151,33 +161,38 @@ class Filter(Record):
 
 
 class Rollouts(Record):
-    """Surrogates that start where a held-out trajectory starts, and follow it to its end.
-
-    They are judged by the first `trajectories` of them; figures show the first `drawn`, and each is timed
-    `repeats` times. `integrator` steps them.
-    """
+    """Surrogates that start where a held-out trajectory starts, and follow it to its end."""
 
     trajectories: Count = 20
+    """How many held-out trajectories are followed from their start."""
     drawn: Count = 3
+    """How many of them figures show."""
     repeats: Count = 5
+    """How often each of them is timed; the median counts."""
     integrator: Integrator = Integrator(method="dop853", rtol=1e-8, atol=1e-10)
+    """By which surrogates are stepped."""
 
 
 class FilesStudy(Learning):
-    """A study of trajectories in `files`: names or patterns, below the folder that holds the Snakefile.
-
-    There is no structure and no reference model. Without a `filter` the data are taken as they are, except
-    that derivatives which the files lack are estimated by its defaults. Whole trajectories are held out of
-    training, or single samples of every trajectory (`split_by`).
-    """
+    """A study of trajectories in files of yours: there is no structure and no reference model."""
 
     source: Literal["files"]
+    """Where its data come from: files of yours."""
     files: Annotated[tuple[Word, ...], Field(min_length=1)]
+    """Names, or patterns such as data/*.csv, below the folder that holds the Snakefile: CSV, Parquet or NPZ.
+    """
     columns: Columns
+    """What is what in them."""
     filter: Filter | None = None
+    """By which the data are smoothed. None: they are taken as they are, except that derivatives which the
+    files lack are estimated by its defaults.
+    """
     split_by: SplitBy = "trajectory"
+    """What is held out of training: whole trajectories, or single samples of every trajectory."""
     training_fraction: Share = 0.8
+    """Share that trains; the rest validates."""
     rollouts: Rollouts = Rollouts()
+    """By what surrogates are judged."""
 
     @property
     def variants(self) -> tuple[str, ...]:

@@ -20,8 +20,11 @@ class TrimLimits(Record):
     """Where a trim may lie; beyond, none exists for this aircraft."""
 
     alpha_deg: Range = (-5.0, 10.0)
+    """Angle of attack, positive nose up [°]."""
     incidence_deg: Range = (-12.0, 5.0)
+    """Incidence of the horizontal tail, positive leading edge up [°]."""
     thrust_N: Range = (0.0, 120000.0)
+    """Thrust of both engines together, positive forwards [N]."""
 
     @field_validator("*", mode="after")
     @classmethod
@@ -35,15 +38,20 @@ class FlightCondition(Record):
     """Straight and level flight at a Mach number and an altitude of the standard atmosphere."""
 
     mach: Mach
+    """Mach number; Prandtl–Glauert's rule ends below 0.95."""
     altitude_m: Altitude
+    """Altitude in the standard atmosphere [m]."""
 
 
 class DoubletTimes(Record):
-    """A control goes up at `start_s`, down at `middle_s`, back at `end_s`."""
+    """When a control moves: to one side, to the other, and back."""
 
     start_s: NotNegative = 0.5
+    """The control goes to its positive amplitude [s]."""
     middle_s: Positive = 1.5
+    """It goes to the negative one [s]."""
     end_s: Positive = 2.5
+    """It goes back [s]. The three increase."""
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:
@@ -55,33 +63,52 @@ class DoubletTimes(Record):
 
 
 class RandomFlights(Record):
-    """Flights to compare costs and errors by: each doublet so often, at random trims and amplitudes.
+    """Flights to compare costs and errors by, at random trims and amplitudes.
 
-    Conditions and amplitudes are drawn from the limits of the network's training; amplitudes of less than
-    `least_deg` are not, for what they move is little.
+    Both are drawn from the limits of the network's training.
     """
 
     of_each_doublet: Count = 30
+    """Flights with a doublet of each control."""
     least_deg: NotNegative = 1.0
+    """Least amplitude [°]; smaller ones move too little to measure an error by. Below the limits of every
+    control.
+    """
     rebuild_flights: Count = 3
+    """Of these, how many are flown with a lattice that is rebuilt at every call, the dearest baseline."""
     repeats: Count = 3
+    """How often each flight of a fast model is timed; the median counts."""
     seed: Annotated[int, Field(ge=0)] = 2024
+    """Seed of the draws."""
 
 
 class FlightSettings(Record):
     """Everything about the airliner's flights that is not the aircraft."""
 
     elastic_modes: Annotated[int, Field(ge=1, le=30)] = 8
+    """Elastic modes of the aircraft that move in flight, from the lowest."""
     aerodynamic_modes: Annotated[tuple[Count, ...], Field(min_length=1, max_length=6)] = (1, 2, 5, 6, 7, 8)
+    """Numbers of those that the aerodynamics feels: by default the paper's six. Each at most once."""
     condition: FlightCondition = FlightCondition(mach=0.7, altitude_m=10000.0)
+    """Where the drawn manoeuvres begin."""
     envelope_mach: Annotated[tuple[Mach, ...], Field(min_length=1)] = (0.6, 0.65, 0.7, 0.75)
+    """Mach numbers of the trims that are tabulated."""
     envelope_altitude_m: Annotated[tuple[Altitude, ...], Field(min_length=1)] = (8000.0, 9000.0, 10000.0)
+    """Altitudes of the trims that are tabulated [m]."""
     limits: TrimLimits = TrimLimits()
+    """Where a trim may lie."""
     step_s: Positive = 0.005
+    """Step of RK4, and between samples [s]."""
     duration_s: Positive = 5.0
+    """Length of each flight, a whole number of steps [s]."""
     doublet_deg: Annotated[float, Field(gt=0.0, le=30.0)] = 5.0
+    """Amplitude of the drawn doublets [°]. Positive: trailing edge of the elevator down, of the left aileron
+    down and the right one up, of the rudder to the left.
+    """
     doublet: DoubletTimes = DoubletTimes()
+    """When the control moves."""
     random_flights: RandomFlights = RandomFlights()
+    """Flights by which costs and errors are compared."""
 
     @model_validator(mode="after")
     def _lasts_whole_steps(self) -> Self:

@@ -16,10 +16,12 @@ AXES: tuple[Vector, Vector, Vector] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0
 
 
 class Interval(Record):
-    """A load acts for start_s ≤ t < end_s, without end where none is given."""
+    """A load acts for start_s ≤ t < end_s."""
 
     start_s: NotNegative = 0.0
+    """When the load begins to act [s]."""
     end_s: Positive | None = None
+    """When it ends [s], after its start. None: it does not end by itself."""
 
     @model_validator(mode="after")
     def _ends_after_its_start(self) -> Self:
@@ -32,22 +34,29 @@ class Constant(Interval):
     """A factor of 1."""
 
     kind: Literal["constant"] = "constant"
+    """Held as it is."""
 
 
 class Sine(Interval):
     """The factor sin(ω t + phase)."""
 
     kind: Literal["sine"] = "sine"
+    """Swinging."""
     frequency_rad_s: Positive
+    """ω, the angular frequency [rad/s]."""
     phase_rad: float = 0.0
+    """The phase at t = 0 [rad]."""
 
 
 class Power(Interval):
-    """The factor (t / reference_s) to the power of `exponent`."""
+    """A power of the time as factor: (t / reference_s)^exponent."""
 
     kind: Literal["power"] = "power"
+    """Growing from t = 0."""
     exponent: Annotated[int, Field(ge=1)]
+    """Power of (t / reference_s)."""
     reference_s: Positive = 1.0
+    """The time at which the factor is 1 [s]."""
 
 
 # Another history is one more record here, and its factor in flexsurr.simulation.history.
@@ -61,6 +70,7 @@ class _Load(Record):
     """What every load has."""
 
     history: History = Constant()
+    """The factor that it follows in time. None given: held as it is."""
 
     def until(self, end_s: float) -> Self:
         """The same load that ends at `end_s` [s], if it does not end before."""
@@ -70,11 +80,16 @@ class _Load(Record):
 
 
 class TipForce(_Load):
-    """A force at the tip along `direction`."""
+    """A force at the tip."""
 
     kind: Literal["tip_force"] = "tip_force"
+    """All of it at the tip."""
     force_N: float
+    """Its size [N], positive along `direction`."""
     direction: Vector = AXES[2]
+    """Of any length but 0, in the clamp's frame before it is turned: x along the span, y left, z up. By
+    default up.
+    """
 
     @model_validator(mode="after")
     def _has_a_direction(self) -> Self:
@@ -92,30 +107,33 @@ Shape = Literal["uniform", "linear", "elliptic", "one_minus_elliptic"]
 
 
 class Spread(Record):
-    """A force per length along the span: its size times a shape of ξ = x/L.
-
-    uniform 1; linear ξ; elliptic √(1 − ξ²), as lift in eq. 14; one_minus_elliptic 1 − √(1 − ξ²), as drag in
-    eq. 13.
-    """
+    """A force per length along the span: its size times a shape of ξ = x/L."""
 
     force_N_m: float
+    """Force per span [N/m] where the shape is 1; positive along the axis."""
     shape: Shape = "uniform"
+    """How it varies along ξ = x / L: 1; ξ; √(1 − ξ²), as lift in eq. 14; 1 − √(1 − ξ²), as drag in eq. 13."""
 
 
 class DistributedForce(_Load):
-    """Forces per length along the axes, each of its own shape, from `from_m` to `to_m` (none: to the tip).
-
-    `acts_on: span` gives each element the integral over its own span, at its centre on the elastic axis;
-    `tip` gives all of it to the tip.
-    """
+    """Forces per length along the axes, each of its own shape."""
 
     kind: Literal["distributed"] = "distributed"
+    """Along the span."""
     along_x: Spread | None = None
+    """What acts along x, outwards. At least one of the three is given."""
     along_y: Spread | None = None
+    """What acts along y, to the left."""
     along_z: Spread | None = None
+    """What acts along z, upwards."""
     from_m: NotNegative = 0.0
+    """Where it begins, from the clamp [m]."""
     to_m: Positive | None = None
+    """Where it ends, from the clamp, within the span [m]. None: at the tip."""
     acts_on: Literal["span", "tip"] = "span"
+    """span gives each element the integral over its own span, at its centre on the elastic axis; tip gives
+    all of it to the tip.
+    """
 
     @model_validator(mode="after")
     def _acts_along_an_axis(self) -> Self:

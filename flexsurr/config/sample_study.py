@@ -11,14 +11,22 @@ from flexsurr.config.study import DEFAULT, Count
 
 
 class SampleSettings(Record):
-    """How many samples, of which `held_out` are kept to validate on, in how many shards."""
+    """The samples, in shards."""
 
     samples: Count = 4096
+    """Samples in all."""
     samples_per_shard: Count = 512
+    """Samples in a file; each file is a job."""
     held_out: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.2
+    """Share that validates."""
     seed: Annotated[int, Field(ge=0)] = 2024
+    """Seed of the draws."""
     boundary_condition: Literal["exact", "linear"] = "exact"
+    """Of the lattice. exact: products of inputs are kept; linear: first order in every input, of which the
+    quadratic form is exact.
+    """
     panels: PanelCounts = PanelCounts()
+    """How finely the lattice is cut."""
 
     @property
     def shards(self) -> int:
@@ -27,18 +35,22 @@ class SampleSettings(Record):
 
 
 class SampleStudy(Record):
-    """One study. Paths are relative to the folder that holds the Snakefile.
-
-    Samples are drawn from `limits` of the `aircraft`'s vortex lattice, and maps are fitted to them by the
-    `sweeps`; the aircraft is flown with each of the best.
-    """
+    """A study of an aircraft: samples of its vortex lattice train maps, and it is flown with the best."""
 
     source: Literal["samples"]
+    """Where its data come from: samples of a vortex lattice."""
     aircraft: str
+    """The file of the aircraft."""
     limits: str
+    """The file of the intervals that samples are drawn from."""
     sweeps: Annotated[dict[str, str], Field(min_length=1)]
+    """The files of its sweeps by names of yours. One is called default: figures show it, and one of its
+    spaces is a network, to fly with.
+    """
     dataset: SampleSettings = SampleSettings()
+    """Its samples."""
     flight: FlightSettings = FlightSettings()
+    """How the aircraft is flown."""
 
     @model_validator(mode="after")
     def _has_a_default_sweep(self) -> Self:

@@ -25,6 +25,7 @@ class Tracking(Record):
     """Where runs are recorded for the page on which they are compared."""
 
     uri: str | None = None
+    """Address of a store or server of MLflow. None: a database of its own in `<results>/mlflow`."""
 
     @field_validator("uri")
     @classmethod
@@ -37,22 +38,25 @@ class Tracking(Record):
 
 
 class Timing(Record):
-    """How jobs that measure time run: cores they keep others off (all when none are given)."""
+    """How jobs that measure time run."""
 
     cores: Count | None = None
+    """Cores that a job which measures time keeps others off. None: all, so that it runs alone."""
 
 
 class Settings(Record):
-    """config/config.yaml. `overrides` holds values that replace those of a study's file.
-
-    `results` may begin with ~ and hold variables of the environment.
-    """
+    """What one invocation is to do."""
 
     results: Annotated[str, Field(min_length=1)] = "results"
+    """The folder that everything is written to; it may begin with ~ and hold variables of the environment."""
     studies: Annotated[tuple[str, ...], Field(min_length=1)]
+    """The studies to run: names of files in config/studies."""
     tracking: Tracking = Tracking()
+    """Where runs are recorded, for the page on which they are compared."""
     timing: Timing = Timing()
+    """How time is measured."""
     overrides: dict[str, dict[str, Any]] = Field(default_factory=dict)
+    """For a study's name, values that replace those of its file, nested as they are there."""
 
     @field_validator("results")
     @classmethod

@@ -23,10 +23,15 @@ class BeamStiffness(Record):
     """
 
     elements: Annotated[int, Field(ge=1)]
+    """Number of them, of equal length."""
     axial_stiffness_N: Values
+    """EA [N] of each element."""
     flapwise_bending_stiffness_N_m2: Values
+    """EI across the surface [N m²] of each element."""
     edgewise_bending_stiffness_N_m2: Values
+    """EI within the surface [N m²] of each element."""
     torsional_stiffness_N_m2: Values
+    """GJ [N m²] of each element."""
 
     @model_validator(mode="after")
     def _a_value_for_each_element(self) -> Self:
@@ -46,9 +51,13 @@ class ConnectionStiffness(Record):
     """EA, EI and GJ of a single element that joins two beams."""
 
     axial_stiffness_N: Positive
+    """EA [N]."""
     flapwise_bending_stiffness_N_m2: Positive
+    """EI across the surface [N m²]."""
     edgewise_bending_stiffness_N_m2: Positive
+    """EI within the surface [N m²]."""
     torsional_stiffness_N_m2: Positive
+    """GJ [N m²]."""
 
     @property
     def value(self) -> tuple[float, float, float, float]:
@@ -61,23 +70,43 @@ class Connections(Record):
     """The elements between beams, and the pylon and nacelle, which have one or a few of their own."""
 
     source: Literal["published", "transcribed", "digitised", "assumed"]
+    """Where its numbers come from: the paper of the study, another's tables, another's plots, or nowhere in
+    public.
+    """
     wing_to_fuselage: ConnectionStiffness
+    """On either side."""
     horizontal_tail_to_fuselage: ConnectionStiffness
+    """On either side."""
     vertical_tail_to_fuselage: ConnectionStiffness
+    """At its root."""
     wing_to_pylon: ConnectionStiffness
+    """From the elastic axis down."""
     pylon: ConnectionStiffness
+    """Forward along it."""
     nacelle: ConnectionStiffness
+    """From hanger to hanger."""
     pylon_to_nacelle_forward: ConnectionStiffness
+    """The forward hanger."""
     pylon_to_nacelle_aft: ConnectionStiffness
+    """The aft hanger."""
 
 
 class Stiffness(Record):
     """All beams of the aircraft and their connections."""
 
     source: Literal["published", "transcribed", "digitised", "assumed"]
+    """Where its numbers come from: the paper of the study, another's tables, another's plots, or nowhere in
+    public.
+    """
     wing_side_of_body_to_crank: BeamStiffness
+    """The wing's first section that has a beam."""
     wing_crank_to_tip: BeamStiffness
+    """The wing's last section."""
     horizontal_tail: BeamStiffness
+    """Each half."""
     vertical_tail: BeamStiffness
+    """All of it."""
     fuselage: BeamStiffness
+    """From nose to tail."""
     connections: Connections
+    """What joins the beams."""

@@ -23,26 +23,63 @@ class Structure(Record):
     """
 
     name: str
+    """What results and errors call it."""
     length_m: Positive
+    """Span of the undeformed beam, from the clamp to the tip [m]."""
     elements: Annotated[int, Field(ge=1)]
+    """Rigid elements of equal length along the span, numbered from the clamp."""
     joints: Annotated[tuple[Joint, ...], Field(min_length=1)]
+    """What gives way at the root of each element. in_plane bends about z, out_of_plane about y, torsion
+    twists about x, axial stretches along x; each needs its stiffness.
+    """
     mass_per_length_kg_m: Positive
+    """Mass per span [kg/m]."""
     bending_stiffness_in_plane_N_m2: Positive | None = None
+    """EI of in-plane bending, in the plane of x and y [N m²]. Needed with the joint in_plane, of no effect
+    without.
+    """
     bending_stiffness_out_of_plane_N_m2: Positive | None = None
+    """EI of out-of-plane bending, which lifts the tip [N m²]. Needed with the joint out_of_plane, of no
+    effect without.
+    """
     torsional_stiffness_N_m2: Positive | None = None
+    """GJ [N m²]. Needed with the joint torsion, of no effect without."""
     axial_stiffness_N: Positive | None = None
+    """EA [N]. Needed with the joint axial, of no effect without."""
     torsional_inertia_per_length_kg_m: NotNegative = 0.0
+    """Mass moment of inertia per span about the centre of gravity, in torsion [kg m]. More than 0 with the
+    joint torsion; 0 is allowed only with an offset of the centre of gravity and without the joint
+    out_of_plane.
+    """
     chord_m: Positive = 0.1
+    """Chord [m]; it only limits the offset of the centre of gravity."""
     centre_of_gravity_offset_m: float = 0.0
+    """Centre of gravity from the elastic axis, positive along y, to the left [m]; at most a chord to either
+    side.
+    """
     clamp_psi_deg: float = 0.0
+    """The clamp is turned first about z [°]; positive turns the span to the left."""
     clamp_theta_deg: float = 0.0
+    """Then about the turned −y [°]; positive lifts the span."""
     clamp_phi_deg: float = 0.0
+    """Then about the turned x [°]; positive lowers the right side."""
     gravity_m_s2: NotNegative = 0.0
+    """Size of the gravity along −z [m/s²]: 9.80665 on Earth. 0: none."""
     damping_in_plane_s: NotNegative = 0.0
+    """Damping over stiffness of the in_plane joints (Rayleigh's β) [s]: a mode of ω rad/s has the damping
+    ratio ½ β ω.
+    """
     damping_out_of_plane_s: NotNegative = 0.0
+    """The same of the out_of_plane joints [s]."""
     damping_torsion_s: NotNegative = 0.0
+    """The same of the torsion joints [s]."""
     damping_axial_s: NotNegative = 0.0
+    """The same of the axial joints [s]."""
     clamp_spring: Literal["tip_deflection", "half_element"] = "tip_deflection"
+    """The spring at the clamp, where half an element bends. tip_deflection: 6 EI L / (l (3L − l)), l an
+    element and L the span, exact under a small tip load; half_element: 2 EI / l. In torsion and stretch it is
+    2 GJ / l and 2 EA / l either way.
+    """
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:

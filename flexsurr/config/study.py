@@ -44,9 +44,18 @@ class Integrator(Record):
     """An integrator and its only settings: a step where the step is fixed, tolerances where it adapts."""
 
     method: IntegratorMethod
+    """scipy_… are SciPy's, whose steps are Python: slow, and nothing has to be compiled. The others are
+    compiled. Implicit, for stiff structures: scipy_radau, scipy_bdf, radau_iia_5; lsoda changes over by
+    itself. gauss_legendre_… keep the energy.
+    """
     step_s: Positive | None = None
+    """The longest step [s], of which a whole number is made from one sample to the next; needed by rk4,
+    dop853_fixed (order 8) and gauss_legendre_…, and refused by the others.
+    """
     rtol: Positive | None = None
+    """Relative tolerance of a step; for methods that choose their step. None: 1e-3."""
     atol: Positive | None = None
+    """Absolute tolerance of a step, in the units of the states; likewise. None: 1e-6."""
 
     @model_validator(mode="after")
     def _settings_fit_the_method(self) -> Self:
@@ -79,18 +88,31 @@ class Reduction(Record):
     """The reduced-order model, eq. 10: r modes about an equilibrium."""
 
     modes: Count
+    """r, the modes that are kept: at most the coordinates (joints times elements)."""
     normalisation: Literal["unit", "mass"] = "unit"
+    """What each mode is scaled to: Euclidean norm 1, or modal mass 1. Prefer mass for more than one: a
+    dissipative_hnn needs it.
+    """
     about: Literal["undeformed", "equilibrium"] = "undeformed"
+    """Where the modes are taken: undeformed, or in equilibrium under gravity."""
 
 
 class InitialConditions(Record):
-    """Ranges of the random initial states, in amplitudes of unit-norm modes (modal) or joints (joint)."""
+    """Ranges of the random initial states, in amplitudes that do not depend on how modes are normalised."""
 
     kind: Literal["modal", "joint"] = "modal"
+    """modal: drawn for the coordinates of modes of unit norm, whatever `normalisation` is; joint: drawn for
+    every joint and projected.
+    """
     q_min_deg: float = -20.0
+    """Least coordinate [°]. Of a unit-norm mode it is the root of the sum of squares of the joints' angles.
+    """
     q_max_deg: float = 20.0
+    """Largest coordinate [°]."""
     p_min_kg_m2_s: float = 0.0
+    """Least momentum [kg m²/s]."""
     p_max_kg_m2_s: float = 1.5
+    """Largest momentum [kg m²/s]."""
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:
@@ -102,20 +124,28 @@ class InitialConditions(Record):
 
 
 class DatasetSettings(Record):
-    """Free responses from random initial states, in shards; drawn by `seed`, or else by the study's.
-
-    Whole trajectories are held out of training, or single samples of every trajectory (`split_by`).
-    """
+    """Free responses from random initial states, in shards."""
 
     seed: Annotated[int, Field(ge=0)] | None = None
+    """Seed of the initial states. None: the study's. Two datasets of a study need different ones."""
     trajectories: Annotated[int, Field(ge=2)] = 50
+    """Trajectories in all."""
     trajectories_per_shard: Count = 10
+    """Trajectories in a file; each file is a job."""
     duration_s: Positive = 0.2
+    """Length of each trajectory, a whole number of steps [s]."""
     step_s: Positive = 0.001
+    """Between samples [s]; the integrator's own steps do not depend on it."""
     split_by: SplitBy = "trajectory"
+    """What is held out of training: whole trajectories, or single samples of every trajectory (as the paper
+    did; neighbours of theirs train).
+    """
     training_fraction: Share = 0.8
+    """Share that trains; the rest validates."""
     initial_conditions: InitialConditions = InitialConditions()
+    """Where trajectories start."""
     integrator: Integrator = Integrator(method="dop853", rtol=1e-10, atol=1e-12)
+    """By which the trajectories are made."""
 
     @model_validator(mode="after")
     def _lasts_whole_steps(self) -> Self:
@@ -129,25 +159,29 @@ class DatasetSettings(Record):
 
 
 class LearnedLoadSettings(Record):
-    """The forced response's load, learned from the configurations of one `dataset` of the study.
-
-    Polynomials of `kinematics_degree` give positions and directions; the generalised forces that follow
-    are fitted by a polynomial of `degree`, and by a network of `hidden` neurons in at most `epochs`.
-    """
+    """How the forced response's load is learned: its generalised forces, by polynomials and by a network."""
 
     dataset: str = DEFAULT
+    """Whose configurations it is learned from: default, or one of further_datasets."""
     kinematics_degree: Count = 10
+    """Degree of the polynomials that give positions and directions of the structure."""
     degree: Count = 6
+    """Degree of the polynomials that give the generalised forces."""
     hidden: Count = 16
+    """Neurons of the network that gives the generalised forces."""
     activation: Activation = "half_log"
+    """Activation function of that network."""
     epochs: Count = 200
+    """Epochs of its training, at most."""
 
 
 class DescribedSimulations(Record):
-    """How many simulations the described reduced model is timed on: it takes half a minute for each."""
+    """How many simulations the described reduced model is timed on, at half a minute each."""
 
     as_printed: Count = 3
+    """Simulations without the gyroscopic term."""
     hamiltonian: Count = 1
+    """Simulations with it."""
 
     def of(self, variant: Variant) -> int:
         """The number for one variant."""
@@ -156,33 +190,44 @@ class DescribedSimulations(Record):
 
 
 class EvaluationSettings(Record):
-    """Responses by which models are timed and judged.
-
-    In forced responses `load` acts from rest until a random time within `longest_load_s`, or until the end of
-    its own history; `learned_load` says how its generalised forces are learned. Integrators:
-    `integrators` are timed, beside SciPy's Radau; `reference_integrator` gives what errors are measured from,
-    `judging_integrator` the responses by which runs are chosen, `drawing_integrator` those of the figures,
-    `energy_integrator` those whose energy is drawn, and `validation_integrator` full and reduced order.
-    """
+    """Responses by which models are timed and judged, and by what each is stepped."""
 
     simulations: Count = 10
+    """Free and forced responses that every model is timed on and judged by."""
     described_simulations: DescribedSimulations = DescribedSimulations()
+    """Of these, how many the described model is timed on."""
     scipy_simulations: Count = 3
+    """Of these, how many are stepped by SciPy's Radau, at seconds each."""
     duration_s: Positive = 30.0
+    """Length of each response, a whole number of output steps [s]."""
     output_step_s: Positive = 0.01
+    """Between the samples at which errors are measured [s]."""
     repeats: Count = 5
+    """How often each simulation of a compiled model is timed; the median counts."""
     long_responses: Count = 5
+    """Further free responses, by whose tip error runs are chosen."""
     validation_duration_s: Positive = 1.0
+    """Length of the response of full and reduced order to the load held on, which shows what the reduction
+    costs [s].
+    """
     load: Load = TipForce(force_N=10.0, history=Sine(frequency_rad_s=50.0))
+    """What acts in forced responses, from rest. By default 10 sin(50 t) N up at the tip."""
     longest_load_s: Positive = 5.0
+    """The load ends at a random time up to this [s]."""
     learned_load: LearnedLoadSettings = LearnedLoadSettings()
+    """How its generalised forces are learned."""
     reference_integrator: Integrator = Integrator(method="dop853", rtol=1e-12, atol=1e-14)
+    """Gives the responses from which errors are measured: tight."""
     judging_integrator: Integrator = Integrator(method="dop853_fixed", step_s=0.01)
+    """Gives the responses by which runs are chosen."""
     drawing_integrator: Integrator = Integrator(method="dop853", rtol=1e-10, atol=1e-12)
+    """Gives the responses of the figures."""
     energy_integrator: Integrator = Integrator(method="gauss_legendre_6", step_s=0.002)
-    # The lumps at mid-element put frequencies into the full-order model far above anything seen in its
-    # response: an implicit method steps over them.
+    """Gives the responses whose energy is drawn: one that does not drift by itself."""
     validation_integrator: Integrator = Integrator(method="radau_iia_5", rtol=1e-6, atol=1e-9)
+    """Steps full and reduced order. Lumps at mid-element put frequencies into the full-order model far above
+    anything seen in its response: an implicit method steps over them.
+    """
     integrators: tuple[Integrator, ...] = (
         Integrator(method="dop853_fixed", step_s=0.01),
         Integrator(method="dop853", rtol=1e-7, atol=1e-9),
@@ -190,6 +235,7 @@ class EvaluationSettings(Record):
         Integrator(method="gauss_legendre_6", step_s=5e-3),
         Integrator(method="radau_iia_5", rtol=1e-6, atol=1e-9),
     )
+    """Compiled ones that are timed beside SciPy's Radau."""
 
     @model_validator(mode="after")
     def _lasts_whole_steps(self) -> Self:
@@ -208,23 +254,23 @@ class EvaluationSettings(Record):
 
 
 class Statics(Record):
-    """Dead tip loads for the comparison with the exact elastica."""
+    """Static deflection under dead loads, held against the exact elastica."""
 
     tip_loads_N: Annotated[tuple[float, ...], Field(min_length=1)] = tuple(
         float(f) for f in range(0, 151, 10)
     )
+    """Dead loads at the tip, positive upwards, whose deflection is held against the exact elastica [N]."""
 
 
 class Learning(Record):
-    """What every study has. Paths are relative to the folder that holds the Snakefile.
-
-    `sweeps` names each sweep of the study; the best surrogates of each stand side by side in the tables.
-    The one called `default` is the one the figures show. One of these that another file names is left out
-    where its value is null. `seed` draws whatever is random, but for the trials' own.
-    """
+    """What every study that learns fields ẋ = f(x) has."""
 
     sweeps: Annotated[dict[str, str], Field(min_length=1)]
+    """The files of its sweeps by names of yours. Figures show the one called default; the best surrogates of
+    each stand side by side in the tables. One that the study this is `based_on` names is left out by null.
+    """
     seed: Annotated[int, Field(ge=0)] = 2024
+    """Seed of whatever is random, but for the trials' own."""
 
     @field_validator("sweeps", mode="before")
     @classmethod
@@ -253,24 +299,30 @@ def _check_names(key: str, names: Iterable[str]) -> None:
 
 
 class Study(Learning):
-    """A study of one structure: trajectories of its reduced model train its surrogates.
-
-    Besides `dataset`, which every surrogate is validated on, there may be `further_datasets`, and `trains_on`
-    says which of them a sweep trains on. One of these that another file names is left out where its value is
-    null. `frequencies_also_of` names structures whose natural frequencies are tabulated beside those of the
-    study's own.
-    """
+    """A study of one structure: trajectories of its reduced model train its surrogates."""
 
     source: Literal["trajectories"] = "trajectories"
+    """Where its data come from: simulated trajectories."""
     structure: str
+    """The file of its structure."""
     frequencies_also_of: tuple[str, ...] = ()
+    """Files of structures whose natural frequencies are tabulated beside."""
     variants: Annotated[tuple[Variant, ...], Field(min_length=1)] = ("hamiltonian", "as_printed")
+    """Which reference models there are: hamiltonian keeps the gyroscopic term; as_printed drops it, as the
+    paper prints it. The first is shown where there is room for one.
+    """
     reduction: Reduction
+    """The modes that make the reduced model."""
     dataset: DatasetSettings = DatasetSettings()
+    """What surrogates are trained on, and every surrogate is validated on."""
     further_datasets: dict[str, DatasetSettings] = Field(default_factory=dict)
+    """More of them, by names of yours. One that the study this is `based_on` has is left out by null."""
     trains_on: dict[str, str] = Field(default_factory=dict)
+    """For a sweep, the name of the further dataset that it trains on. Others train on `dataset`."""
     evaluation: EvaluationSettings = EvaluationSettings()
+    """Responses by which models are timed and judged."""
     statics: Statics = Statics()
+    """Static deflection, against the exact one."""
 
     @field_validator("further_datasets", "trains_on", mode="before")
     @classmethod

@@ -15,6 +15,9 @@ class Space(Record):
     """Values to combine; a key with several values is a dimension of the search."""
 
     architecture: str
+    """What is trained: a name below, or a file and a class of yours, as in my_models.py:MyField. Every other
+    key of an architecture or optimiser takes a list of values here.
+    """
 
     @field_validator("*", mode="before")
     @classmethod
@@ -28,9 +31,13 @@ class Sweep(Record):
     """A search over one or more spaces: every combination, or `draws` random ones of each space."""
 
     search: Literal["grid", "random"] = "grid"
+    """grid takes every combination of each space, random some."""
     draws: Count | None = None
+    """Combinations that are drawn from each space. Given exactly when search is random."""
     seed: int = 0
+    """Seed of these draws."""
     spaces: tuple[Space, ...]
+    """Keys with lists of values; each space is searched by itself."""
 
     @model_validator(mode="after")
     def _draws_belong_to_random(self) -> Self:

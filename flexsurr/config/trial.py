@@ -38,26 +38,35 @@ class Architecture(Record):
     """What is trained. `optimisers` are those that can."""
 
     architecture: str
+    """What is trained."""
 
     optimisers: ClassVar[tuple[str, ...]] = ("least_squares",)
 
 
 class StateField(Architecture):
-    """What gives the rates of the states.
-
-    With a number of `configurations` it is trained on those, sampled without a simulation, not on a dataset.
-    """
+    """What gives the rates of the states."""
 
     configurations: Count | None = None
+    """Configurations of the reduced model that it is trained on, sampled without a simulation. None: it is
+    trained on a dataset.
+    """
 
 
 class FieldNetwork(StateField):
-    """A network of the states' rates; `scaling` is that of states and rates."""
+    """A network of the states' rates."""
 
     architecture: Literal["mlp", "hnn", "dissipative_hnn"]
+    """mlp gives the rates themselves, hnn an energy, dissipative_hnn an energy and a dissipation."""
     hidden: Layers
+    """Neurons of each hidden layer; dissipative_hnn has two networks of these."""
     activation: Activation
+    """Activation function of its neurons. half_log (½ log(1 + z²)) and atan are the fastest to step; elu's
+    slope has a kink.
+    """
     scaling: ScalingKind = "canonical"
+    """Of states and rates. canonical: one factor for all q, one for all p, which keeps Hamilton's equations;
+    per_feature: each by its own spread; min_max: each from 0 to 1.
+    """
 
     optimisers = ("levenberg_marquardt", "lbfgs", "adam", "adam_cosine", "adamw", "adamw_cosine")
 
@@ -66,15 +75,20 @@ class FieldPolynomial(StateField):
     """A polynomial Hamiltonian, or polynomials of mass matrix, stiffness and damping."""
 
     architecture: Literal["polynomial", "port_hamiltonian"]
+    """polynomial gives an energy; port_hamiltonian mass matrix, stiffness and damping."""
     degree: Count
+    """Degree of the polynomials."""
 
 
 class PortHamiltonianNetwork(StateField):
     """A network of the mass matrix."""
 
     architecture: Literal["port_hamiltonian"]
+    """A mass matrix that depends on q, with a constant stiffness and damping."""
     hidden: OneLayer
+    """Neurons of its one hidden layer, in brackets all the same: [32]."""
     activation: Activation
+    """Activation function of its neurons."""
 
     optimisers = ("levenberg_marquardt",)
 
@@ -86,28 +100,29 @@ def _of_users(architecture: str) -> str:
 
 
 class TorchModule(StateField):
-    """A network of the user's own, by its file and class; `options` are keywords of that class.
-
-    `scaling` is that of states and rates; `sha256` is the hash of the file, by which a run is of its content.
-    """
+    """A network of the user's own, by its file and class."""
 
     architecture: Annotated[str, AfterValidator(_of_users)]
+    """A file below the project and a class in it, as in my_models.py:MyField. The file is executed."""
     options: dict[str, Any] = Field(default_factory=dict)
+    """Keywords of the class. In a sweep each has a list of values."""
     scaling: ScalingKind = "canonical"
+    """Of states and rates, as above."""
     device: Literal["cpu", "cuda", "auto"] = "cpu"
+    """Where torch trains; auto: on a GPU if there is one."""
     sha256: str = ""
+    """The hash of its file. It is found, not given: leave it out."""
 
     optimisers = ("lbfgs", "adam", "adam_cosine", "adamw", "adamw_cosine")
 
 
 class Map(Architecture):
-    """What gives coefficients of features, and how the samples that it is fitted to are drawn.
-
-    `lattice` is what was sampled: linear_in_modes is to first order in the modal coordinates and velocities.
-    """
+    """What gives coefficients of features, and how the samples that it is fitted to are drawn."""
 
     sampling: Sampling = "pseudo_random"
+    """How samples fill their intervals: at random, or evenly by a Sobol sequence."""
     lattice: LatticeForm = "full"
+    """What is sampled: the lattice, or to first order in the modal coordinates and velocities."""
 
     @property
     def dataset(self) -> str:
@@ -129,20 +144,24 @@ class MapPolynomial(Map):
     """A baseline: first or second order in the features."""
 
     architecture: Literal["linear", "quadratic"]
+    """A polynomial of first or second order in the features."""
 
 
 class MapNetwork(Map):
-    """A network of one hidden layer. `inputs`: second_order adds products of features.
-
-    `networks`: four is one for drag, one for the longitudinal, one for the lateral-directional outputs, one
-    for the modal ones, each with `hidden` neurons.
-    """
+    """A network of one hidden layer, or four of them."""
 
     architecture: Literal["network"]
+    """A network of one hidden layer."""
     networks: Literal["one", "four"] = "one"
+    """one for all outputs, or four: for drag, the longitudinal, the lateral-directional and the modal ones,
+    each with `hidden` neurons.
+    """
     inputs: Literal["features", "second_order"] = "features"
+    """The features, or products of them too."""
     hidden: OneLayer
+    """Neurons of its one hidden layer, in brackets all the same: [75]."""
     activation: Activation
+    """Activation function of its neurons."""
 
     optimisers = ("levenberg_marquardt", "lbfgs")
 
@@ -158,57 +177,67 @@ class Optimiser(Record):
     """By what it is trained."""
 
     optimiser: str
+    """By what it is trained. None given in a space: levenberg_marquardt, or lbfgs for a class of yours."""
 
 
 class LeastSquares(Optimiser):
     """Linear least squares, without iteration."""
 
     optimiser: Literal["least_squares"]
+    """In one step; for polynomials."""
 
 
 class Iterative(Optimiser):
-    """Epoch after epoch, at most `epochs`, or until validation has not improved for `patience`.
-
-    `keep` says whether the weights are those that validated best or those of the last epoch.
-    """
+    """Epoch after epoch."""
 
     epochs: Count = 1000
+    """Epochs at most."""
     patience: Count | None = None
+    """Ends after so many epochs without better validation (by 1 % or more). None: it does not end by this."""
     time_limit_s: Positive | None = None
+    """Ends after this processor time [s]. It makes a result depend on the machine. None: no limit."""
     keep: Literal["best", "last"] = "best"
+    """The weights that validated best, or those of the last epoch."""
     seed: Annotated[int, Field(ge=0)] = 0
+    """Seed of the first weights and of the batches."""
 
 
 class FullBatch(Iterative):
     """Every step sees all samples."""
 
     optimiser: Literal["levenberg_marquardt", "lbfgs"]
+    """Every step sees all samples; levenberg_marquardt is for flexsurr's own networks."""
 
 
 class FirstOrder(Iterative):
-    """Steps along the gradient of a batch, at a constant rate or one that falls to 0 as half a cosine.
-
-    `loss` is what they minimise: the nmse, the mean of squares of the scaled rates' errors, or eqs. 11 and 12
-    as printed (`norms`: a sample's ‖error of q̇‖ + ‖error of ṗ‖, and their mean over a batch).
-    """
+    """Steps along the gradient of a batch."""
 
     learning_rate: Positive
+    """Length of a step over the gradient."""
     batch_size: Count
+    """Samples of a step."""
     precision: Literal["single", "double"] = "double"
+    """Precision of the arithmetic."""
     loss: Literal["nmse", "mean_square", "norms"] = "nmse"
+    """What is minimised: the mean squared error over the variance; the mean of squares of the scaled rates'
+    errors; or eqs. 11 and 12 as printed, a sample's ‖error of q̇‖ + ‖error of ṗ‖.
+    """
 
 
 class Adam(FirstOrder):
     """Adam, with or without the cosine."""
 
     optimiser: Literal["adam", "adam_cosine"]
+    """At a constant rate, or one that falls to 0 as half a cosine."""
 
 
 class AdamW(FirstOrder):
-    """The same where weights shrink by `weight_decay` times the rate at each step too."""
+    """Adam where weights shrink at each step too."""
 
     optimiser: Literal["adamw", "adamw_cosine"]
+    """The same."""
     weight_decay: Annotated[float, Field(ge=0)] = 0.01
+    """At each step weights shrink by this times the rate."""
 
 
 class Trial(Architecture, Optimiser):
