@@ -10,12 +10,13 @@ INSTALLED := $(VENV)/.installed
 export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
 export MLFLOW_DISABLE_TELEMETRY := true
 
-.PHONY: help install reproduce test check ui benchmark browser clean
+.PHONY: help install reproduce test check reference ui benchmark browser clean
 
 help:
 	@echo "make install      the environment alone, in .venv"
 	@echo "make reproduce    the whole default study, results/report.html   (CORES=2)"
 	@echo "make test         every check and test"
+	@echo "make reference    docs/reference.md anew, every key of a configuration"
 	@echo "make ui           the page on which runs are compared, on this machine only   (PORT=5000)"
 	@echo "make benchmark    speed, as ratios"
 	@echo "make clean        remove all results; the environment stays"
@@ -44,6 +45,9 @@ check: $(INSTALLED)
 test: check browser
 	OMP_NUM_THREADS=1 python -m pytest -n logical --dist loadfile --ignore=tests/workflow tests
 	python -m pytest tests/workflow
+
+reference: $(INSTALLED)
+	flexsurr reference --output docs/reference.md
 
 ui: $(INSTALLED)
 	@test -f results/mlflow/mlflow.db || { echo "no runs yet: make reproduce first"; exit 1; }
