@@ -99,7 +99,8 @@ def panel(
 
     def points(fractions: Array) -> Array:
         """(strip edges, fractions, 3)."""
-        return leading[:, None] + (chord[:, None] * fractions)[..., None] * x_axis
+        found: Array = leading[:, None] + (chord[:, None] * fractions)[..., None] * x_axis
+        return found
 
     width = np.diff(edges)
     quarter, three_quarters = points(edges[:-1] + 0.25 * width), points(edges[:-1] + 0.75 * width)
@@ -160,7 +161,8 @@ class _Outline(Planform):
 
     def span_fraction(self, stations: Array) -> Array:
         """Fraction of the semi-span at lengths `stations` (k,)."""
-        return np.interp(stations, self.ends, self._fractions)
+        fraction: Array = np.interp(stations, self.ends, self._fractions)
+        return fraction
 
     def angle(self, stations: Array) -> Array:
         """Angle (k,) [rad] of the chord at lengths `stations` (k,): incidence and twist."""
@@ -170,7 +172,8 @@ class _Outline(Planform):
         along = (stations - self.ends[place]) / np.diff(self.ends)[place]
         first = np.array([section.twist_deg[0] for section in sections])[place]
         last = np.array([section.twist_deg[1] for section in sections])[place]
-        return np.radians(self._surface.incidence_deg + first + along * (last - first))
+        turned: Array = np.radians(self._surface.incidence_deg + first + along * (last - first))
+        return turned
 
 
 def _chordwise_edges(count: int, hinge: float) -> Array:

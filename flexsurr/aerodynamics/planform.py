@@ -35,4 +35,5 @@ class Planform:
 
     def chord(self, length: Array) -> Array:
         """Chord [m] at lengths (m,)."""
-        return np.interp(length, self.ends, self._chords)
+        chord: Array = np.interp(length, self.ends, self._chords)
+        return chord

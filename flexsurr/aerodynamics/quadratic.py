@@ -68,7 +68,7 @@ def quadratic_forms(panels: Panels, grid: MachGrid) -> Array:
 def _wash_of_terms(panels: Panels) -> Array:
     """Normal wash (N, TERMS) for a unit of each term, over V."""
     onset = _onset_of_terms(panels.control, panels.shift)
-    wash = np.einsum("idb,id->ib", onset, panels.normal)
+    wash: Array = np.einsum("idb,id->ib", onset, panels.normal)
     # what turning a normal changes along x, through which the undisturbed air comes
     wash[:, _term(FIRST_CONTROL) : _term(FIRST_ETA)] += np.cross(panels.hinge, panels.normal[:, None])[..., 0]
     wash[:, _term(FIRST_ETA) : _term(FIRST_ETA_RATE)] += np.cross(panels.turn, panels.normal[:, None])[..., 0]

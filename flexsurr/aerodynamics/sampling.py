@@ -45,4 +45,5 @@ def draw_features(
     else:
         generators = (np.random.default_rng([seed, number]) for number in range(first, first + count))
         unit = np.stack([generator.uniform(size=len(FEATURES)) for generator in generators])
-    return low + (high - low) * unit
+    samples: Array = low + (high - low) * unit
+    return samples

@@ -73,7 +73,8 @@ class BeamModel(ABC):
         elastic = 0.5 * np.sum(eta * (eta @ self.projection.stiffness.T), axis=-1)
         undeformed = configuration(beam, np.zeros(beam.coordinates)).masses
         fall = np.sum(at.masses - undeformed, axis=-2) @ beam.gravity
-        return kinetic + elastic - beam.element_mass * fall
+        energy: Array = kinetic + elastic - beam.element_mass * fall
+        return energy
 
     def mass_matrix(self, eta: Array) -> Array:
         """M (..., r, r) at η (..., r), with p = M η̇."""

@@ -42,7 +42,8 @@ def elastica_tip(bending_stiffness: float, length: float, tip_force: float) -> t
 
     def height(u: float) -> float:
         sine = rise - (1.0 + rise) * math.sin(u) ** 2
-        return sine / math.sqrt(0.5 * (1.0 - sine))
+        ratio: float = sine / math.sqrt(0.5 * (1.0 - sine))
+        return ratio
 
     z = quad(height, 0.0, clamp(rise), epsabs=0.0, epsrel=1e-10)[0] / scale
     return math.sqrt(2.0 * rise) / scale, math.copysign(z, tip_force)

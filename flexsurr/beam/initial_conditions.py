@@ -31,7 +31,7 @@ def draw_initial_conditions(
 
 def drawn_amplitudes(basis: ModalBasis, settings: InitialConditions) -> int:
     """How many coordinates are drawn, and as many momenta: r of the modes or n of the joints."""
-    return basis.modes.shape[1 if settings.kind == "modal" else 0]
+    return int(basis.modes.shape[1 if settings.kind == "modal" else 0])
 
 
 def initial_states(basis: ModalBasis, settings: InitialConditions, unit: Array) -> Array:

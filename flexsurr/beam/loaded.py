@@ -40,12 +40,14 @@ class LoadedModel(ABC):
     @property
     def state_names(self) -> tuple[str, ...]:
         """Those of the model."""
-        return self.model.state_names
+        names: tuple[str, ...] = self.model.state_names
+        return names
 
     @property
     def state_units(self) -> tuple[str, ...]:
         """Those of the model."""
-        return self.model.state_units
+        units: tuple[str, ...] = self.model.state_units
+        return units
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
@@ -132,7 +134,8 @@ class VectorisedPlanarLoad(InterpretedLoad):
         """Φᵀ Jᵀ F (r,) at η (r,)."""
         slopes, arms = self._arms
         angles = slopes @ eta
-        return (arms[1] * np.cos(angles) - arms[0] * np.sin(angles)) @ slopes
+        force: Array = (arms[1] * np.cos(angles) - arms[0] * np.sin(angles)) @ slopes
+        return force
 
 
 class CompiledLoad(LoadedModel):
@@ -158,7 +161,7 @@ class CompiledLoad(LoadedModel):
         """Model and load use the same scratch, one after the other."""
         structure = self.projection.structure
         load = planar_load_work_size if is_planar(structure) else spatial_load_work_size
-        return max(self.model.work_size, load(structure.elements))
+        return int(max(self.model.work_size, load(structure.elements)))
 
     def derivative(self, t: float, x: Array) -> Array:
         """ẋ (2r,) at time t [s] and states x (2r,)."""

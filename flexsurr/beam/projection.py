@@ -62,7 +62,7 @@ class Projection:
     @property
     def coordinates(self) -> int:
         """r, half the number of states."""
-        return self.modes.shape[1]
+        return int(self.modes.shape[1])
 
     @property
     def only_twists(self) -> bool:

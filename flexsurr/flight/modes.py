@@ -70,14 +70,16 @@ def _in_mean_axes(shapes: Array, mass: Array, rigid: Array) -> Array:
     """Remove what rounding leaves of rigid-body motion, and normalise."""
     momenta = rigid.T @ mass
     shapes = shapes - rigid @ np.linalg.solve(momenta @ rigid, momenta @ shapes)
-    return shapes / np.sqrt(np.einsum("ik,ij,jk->k", shapes, mass, shapes))
+    normalised: Array = shapes / np.sqrt(np.einsum("ik,ij,jk->k", shapes, mass, shapes))
+    return normalised
 
 
 def _signs(model: StickModel, shapes: Array) -> Array:
     tip = model.lines["wing", RIGHT][-1].nodes[1]
     rise = shapes[6 * tip + 2]
     largest = shapes[np.argmax(np.abs(shapes), axis=0), np.arange(shapes.shape[1])]
-    return np.sign(np.where(np.abs(rise) > _MOVES * np.abs(largest), rise, largest))
+    signs: Array = np.sign(np.where(np.abs(rise) > _MOVES * np.abs(largest), rise, largest))
+    return signs
 
 
 def mirrored(nodes: Array, shapes: Array) -> Array:
@@ -86,4 +88,5 @@ def mirrored(nodes: Array, shapes: Array) -> Array:
     partner = [int(np.argmin(np.linalg.norm(nodes - node * image, axis=1))) for node in nodes]
     # a rotation is an axial vector: those about x and z change sign, that about y does not
     signs = np.concatenate([image, -image])
-    return (shapes.reshape(len(nodes), 6, -1)[partner] * signs[:, None]).reshape(shapes.shape)
+    found: Array = (shapes.reshape(len(nodes), 6, -1)[partner] * signs[:, None]).reshape(shapes.shape)
+    return found

@@ -63,7 +63,8 @@ def coefficient_errors(errors: pd.DataFrame) -> Figure:
 
 def _shown(name: str, value: np.ndarray) -> np.ndarray:
     if name.startswith(ANGLES):
-        return np.degrees(value)
+        degrees: np.ndarray = np.degrees(value)
+        return degrees
     return value / 1000.0 if name == "altitude_m" else value
 
 

@@ -80,12 +80,14 @@ def curvature(tag: Any, z: float) -> float:
     raise TypeError(f"{tag} is an activation of compiled code")
 
 
-def _compile(tag_class: type, sigma: Callable, first: Callable, second: Callable) -> None:
+def _compile(
+    tag_class: type, sigma: Callable[..., float], first: Callable[..., float], second: Callable[..., float]
+) -> None:
     for generic, formula in ((value, sigma), (slope, first), (curvature, second)):
         _register(generic, tag_class, formula)
 
 
-def _register(generic: Callable, tag_class: type, formula: Callable) -> None:
+def _register(generic: Callable[..., float], tag_class: type, formula: Callable[..., float]) -> None:
     @overload(generic, jit_options={"fastmath": FLOATING_POINT, "error_model": "numpy"})
     def resolve(tag, z):
         if isinstance(tag, types.BaseNamedTuple) and tag.instance_class is tag_class:

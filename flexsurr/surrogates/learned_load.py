@@ -59,12 +59,14 @@ class LearnedLoad:
     @property
     def state_names(self) -> tuple[str, ...]:
         """Those of the model."""
-        return self.model.state_names
+        names: tuple[str, ...] = self.model.state_names
+        return names
 
     @property
     def state_units(self) -> tuple[str, ...]:
         """Those of the model."""
-        return self.model.state_units
+        units: tuple[str, ...] = self.model.state_units
+        return units
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
@@ -89,7 +91,7 @@ class LearnedLoad:
     @property
     def work_size(self) -> int:
         """Model and load use the same scratch, one after the other."""
-        return max(self.model.work_size, self._compiled[1])
+        return int(max(self.model.work_size, self._compiled[1]))
 
     def derivative(self, t: float, x: Array) -> Array:
         """ẋ (2r,) at time t [s] and states x (2r,)."""

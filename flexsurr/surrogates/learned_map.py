@@ -95,7 +95,9 @@ class PolynomialMap(LearnedMap):
     def jacobian(self, eta: Array) -> Array:
         """∂(outputs)/∂η, (..., r) -> (..., m, r)."""
         lowered, coefficients = self._derivative
-        return np.einsum("...l,lmk->...mk", evaluate_monomials(lowered, eta / self.scales), coefficients)
+        monomials = evaluate_monomials(lowered, eta / self.scales)
+        slopes: Array = np.einsum("...l,lmk->...mk", monomials, coefficients)
+        return slopes
 
     @property
     def form(self) -> str:
@@ -159,7 +161,8 @@ class NetworkMap(LearnedMap):
         """∂(outputs)/∂η, (..., r) -> (..., m, r)."""
         slopes = ACTIVATIONS[self.activation].slope(eta / self.scales @ self.weights + self.biases)
         weights = self.weights / self.scales[:, None]
-        return np.einsum("kn,...n,nm->...mk", weights, slopes, self.readout, optimize=True)
+        found: Array = np.einsum("kn,...n,nm->...mk", weights, slopes, self.readout, optimize=True)
+        return found
 
     @property
     def form(self) -> str:

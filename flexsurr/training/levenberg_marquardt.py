@@ -87,6 +87,7 @@ def _solve(gram: Array, damping: Array, gradient: Array) -> Array | None:
     damped = gram.copy()
     damped.flat[:: len(gram) + 1] += np.where(damping > 0.0, damping, 1.0)
     try:
-        return -cho_solve(cho_factor(damped, overwrite_a=True, check_finite=False), gradient)
+        step: Array = -cho_solve(cho_factor(damped, overwrite_a=True, check_finite=False), gradient)
+        return step
     except LinAlgError:
         return None

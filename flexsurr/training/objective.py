@@ -72,9 +72,10 @@ class Objective:
     def gradient(self, parameters: Array, gradient: Array, samples: NDArray[np.int64] | None = None) -> float:
         """What is `minimised`, over all `samples` (indices; by default all), its gradient into `gradient`."""
         chosen = self.everything if samples is None else samples
-        return loss_and_gradient(
+        loss: float = loss_and_gradient(
             self.kernel(parameters), self.x, self.y, self.step_weights, chosen, gradient, self.workspace
         )
+        return loss
 
     def normal_equations(self, parameters: Array) -> NormalEquations:
         """JᵀJ and Jᵀr, accumulated over pieces of the Jacobian: memory is bounded by `CHUNK`."""

@@ -25,7 +25,7 @@ from flexsurr.simulation.rhs import Array
 from flexsurr.surrogates.activations import ACTIVATIONS
 from flexsurr.surrogates.coefficient_network import shapes_of
 from flexsurr.training.losses import output_weights
-from flexsurr.training.objective import NormalEquations
+from flexsurr.training.normal_equations import NormalEquations
 
 
 @dataclass(frozen=True, eq=False)

@@ -38,4 +38,5 @@ class Triangle:
         threshold = np.finfo(np.float64).eps * len(norms)
         solution, *_ = lstsq(matrix / norms, targets, cond=threshold, lapack_driver="gelsy")
         solution = solution / norms[:, None]
-        return solution[:, 0] if solution.shape[1] == 1 else solution
+        found: Array = solution[:, 0] if solution.shape[1] == 1 else solution
+        return found
