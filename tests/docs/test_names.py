@@ -9,7 +9,7 @@ import pytest
 import flexsurr
 
 TOP = Path(__file__).parents[2]
-DOCUMENTS = [TOP / "README.md", *sorted((TOP / "docs").glob("*.md"))]
+DOCUMENTS = [*sorted(TOP.glob("*.md")), *sorted((TOP / "docs").glob("*.md"))]
 CAPTIONS = sorted((TOP / "workflow" / "report").glob("*.rst"))
 PACKAGES = {path.name for path in (TOP / "flexsurr").iterdir() if (path / "__init__.py").exists()}
 ENDINGS = {

@@ -1,0 +1,37 @@
+"""What a contributor is told to run is what is run."""
+
+import re
+from pathlib import Path
+
+import yaml
+
+import flexsurr
+
+TOP = Path(__file__).parents[2]
+
+
+def recipe(target: str) -> list[str]:
+    """The commands of a target of the Makefile."""
+    found = re.search(rf"^{target}:.*\n((?:\t.*\n)+)", (TOP / "Makefile").read_text(), re.MULTILINE)
+    assert found is not None
+    return [line.strip() for line in found[1].splitlines()]
+
+
+def test_hooks_before_a_commit_run_what_make_check_runs():
+    hooks = yaml.safe_load((TOP / ".pre-commit-config.yaml").read_text())["repos"]
+    assert [repo["repo"] for repo in hooks] == ["local"]
+    entries = [hook["entry"] for hook in hooks[0]["hooks"]]
+    assert entries == [f".venv/bin/{command}" for command in recipe("check")]
+    assert all(hook["language"] == "system" for hook in hooks[0]["hooks"])
+
+
+def test_make_help_has_every_target():
+    (phony,) = re.findall(r"^\.PHONY: (.*)$", (TOP / "Makefile").read_text(), re.MULTILINE)
+    told = set(re.findall(r"make (\w+)", " ".join(recipe("help"))))
+    assert set(phony.split()) - told == {"help", "browser"}
+
+
+def test_the_changelog_begins_with_what_is_not_released_and_has_the_version():
+    titles = re.findall(r"^## (.*)$", (TOP / "CHANGELOG.md").read_text(), re.MULTILINE)
+    assert titles[0] == "Unreleased"
+    assert titles[1].split()[0] == flexsurr.__version__
