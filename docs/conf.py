@@ -35,7 +35,16 @@ def without_files(app, docname, source):
     source[0] = re.sub(r"\[(`?[^]`]+`?)\]\(\.\./[^)]*\)", r"\1", source[0])
 
 
+def every_document(app, docname, source):
+    """A document that the first page does not name stands at its end, rather than nowhere."""
+    if docname == "index":
+        others = sorted(app.env.found_docs - {"index", *re.findall(r"^[\w-]+$", source[0], re.MULTILINE)})
+        if others:
+            source[0] += "\n```{toctree}\n:caption: More\n:maxdepth: 1\n\n" + "\n".join(others) + "\n```\n"
+
+
 def setup(app):
     """Called by Sphinx."""
     app.connect("autodoc-process-docstring", as_markdown)
     app.connect("source-read", without_files)
+    app.connect("source-read", every_document)
