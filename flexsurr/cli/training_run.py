@@ -11,7 +11,7 @@ from typing import Any
 from flexsurr.cli.alone import alone_in
 from flexsurr.cli.command import Job
 from flexsurr.cli.frames import write_frame
-from flexsurr.config.trial import Map, Trial, settings_of
+from flexsurr.config.trial import Iterative, Map, Trial, settings_of
 from flexsurr.storage import write_json
 from flexsurr.training import Fit
 from flexsurr.training.epochs import Report
@@ -39,7 +39,7 @@ def run(job: Job, trial: Trial, task: Callable[[], Task], store: Path, folder: P
     """Write parameters.json, fit.json, history.parquet, weights.npz and best.npz of the run into `folder`.
 
     weights.npz holds what the trial keeps, best.npz what validated best. A trial that diverges ends well,
-    with status "failed", its reason, and the best weights it met.
+    with status "failed", its reason, and the best weights it met; so does one that is given up: "stopped".
     """
     with alone_in(folder):
         _run(job, trial, task(), store, folder)
@@ -95,6 +95,7 @@ def _figures(job: Job, trial: Trial, result: Fit, dataset_sha256: str) -> dict[s
         "hidden": "x".join(str(width) for width in settings["hidden"] or ()),
         "options": ", ".join(f"{name}={value}" for name, value in (settings.get("options") or {}).items())
         or None,
+        "give_up": _words(trial),
         "epoch_limit": settings["epochs"],
         "epochs": result.epochs,
         "best_epoch": result.best_epoch,
@@ -107,6 +108,12 @@ def _figures(job: Job, trial: Trial, result: Fit, dataset_sha256: str) -> dict[s
         "best_validation_nmse": _finite(result.best_validation_nmse),
         "dataset_sha256": dataset_sha256,
     } | _of_its_kind(trial, result)
+
+
+def _words(trial: Trial) -> str | None:
+    """When the trial is to give up, if ever, as tables say it."""
+    by = trial.give_up if isinstance(trial, Iterative) else None
+    return None if by is None else str(by)
 
 
 def _of_its_kind(trial: Trial, result: Fit) -> dict[str, Any]:

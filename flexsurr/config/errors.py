@@ -52,7 +52,8 @@ def key_path(location: Location) -> str:
 def _line(
     details: ErrorDetails, record: type[BaseModel], origin: Callable[[Location], tuple[str, str]]
 ) -> str:
-    tagged = tuple(step for step in details["loc"] if step != "[key]")
+    # what stands in brackets is no key: a mapping's key itself, or the tag of a union
+    tagged = tuple(step for step in details["loc"] if not str(step).startswith("["))
     location, _ = _resolve(record, tagged)
     file, key = origin(location)
     value = details["input"]

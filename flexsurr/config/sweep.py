@@ -1,22 +1,102 @@
-"""Hyperparameter sweeps: spaces of values, searched as a grid or by random draws (config/sweeps/*.yaml)."""
+"""Hyperparameter sweeps: spaces of values, as a grid or by draws (config/sweeps/*.yaml)."""
 
-from collections.abc import Iterable
+import math
+from collections.abc import Iterable, Mapping
 from types import GenericAlias
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self, get_args, get_origin
 
-from pydantic import Field, create_model, field_validator, model_validator
+from pydantic import Discriminator, Field, Tag, create_model, field_validator, model_validator
 
 from flexsurr.config.schema import Record
 from flexsurr.config.study import Count
 from flexsurr.config.trial import FIELDS, MAPS, Architecture, dimensions
 
+SIGNIFICANT = 6
+"""Digits of a number that is drawn: more would name the same trial differently on another machine."""
+
+
+class Range(Record):
+    """The numbers from `low` to `high`, both included; whole ones where the setting counts something.
+
+    In the place of a list of values, where search is random or sobol.
+    """
+
+    low: float
+    """The least value."""
+    high: float
+    """The largest value."""
+    scale: Literal["linear", "log"] = "linear"
+    """linear: equal differences are equally likely; log: equal ratios."""
+
+    whole: ClassVar[bool] = False
+
+    @model_validator(mode="after")
+    def _has_numbers(self) -> Self:
+        if not self.low < self.high:
+            raise ValueError(f"low: {self.low:g} is not allowed; allowed: below high, {self.high:g}")
+        if self.scale == "log" and self.low <= 0:
+            raise ValueError(f"low: {self.low:g} is not allowed with scale log; allowed: above 0")
+        return self
+
+    @property
+    def count(self) -> float:
+        """How many values there are to draw: infinity where they need not be whole."""
+        return int(self.high) - int(self.low) + 1 if self._draws_whole() else math.inf
+
+    def every(self) -> list[Any]:
+        """All values; OverflowError where they need not be whole."""
+        return [self._value(int(self.low) + step) for step in range(int(self.count))]
+
+    def at(self, share: float) -> Any:
+        """The value that lies at `share` of the way, 0 ≤ share < 1."""
+        # a whole number has the room from itself to the next
+        end = self.high + 1 if self._draws_whole() else self.high
+        if self.scale == "log":
+            number = self.low * (end / self.low) ** share
+        else:
+            number = self.low + (end - self.low) * share
+        if self._draws_whole():
+            return self._value(min(math.floor(number), int(self.high)))
+        return self._value(min(max(float(f"{number:.{SIGNIFICANT}g}"), self.low), self.high))
+
+    def _draws_whole(self) -> bool:
+        return self.whole
+
+    def _value(self, number: float) -> Any:
+        return number
+
+
+class WidthRange(Range):
+    """One hidden layer, its number of neurons from a range."""
+
+    whole = True
+
+    def _value(self, number: float) -> Any:
+        return (number,)
+
+
+class OptionRange(Range):
+    """A range of a keyword of the user's own class, of which nobody knows whether it counts something."""
+
+    integer: bool = False
+    """Whether only whole numbers are drawn."""
+
+    @model_validator(mode="after")
+    def _ends_are_whole(self) -> Self:
+        if self.integer and not (self.low.is_integer() and self.high.is_integer()):
+            raise ValueError("low and high are whole numbers where integer is true")
+        return self
+
+    def _draws_whole(self) -> bool:
+        return self.integer
+
 
 class Space(Record):
-    """Values to combine; a key with several values is a dimension of the search."""
+    """Values to combine; a key with several values, or with a range, is a dimension of the search."""
 
     architecture: str
     """What is trained: a name below, or a file and a class of yours, as in my_models.py:MyField. Every other
-    key of an architecture or optimiser takes a list of values here.
+    key of an architecture or optimiser takes a list of values here, or a range where it is a number.
     """
 
     @field_validator("*", mode="before")
@@ -26,33 +106,57 @@ class Space(Record):
             raise ValueError("a key without values; give a list of values, or leave the key out")
         return value
 
+    def dimensions(self) -> dict[tuple[str, ...], tuple[Any, ...] | Range]:
+        """The values of each key that is given, or their range; ("options", name) is a keyword's key."""
+        found: dict[tuple[str, ...], tuple[Any, ...] | Range] = {}
+        for key in type(self).model_fields:
+            values = getattr(self, key)
+            if key == "options":
+                found |= {(key, name): choices for name, choices in (values or {}).items()}
+            elif key != "architecture" and values is not None:
+                found[(key,)] = values
+        return found
+
 
 class Sweep(Record):
-    """A search over one or more spaces: every combination, or `draws` random ones of each space."""
+    """A search over one or more spaces: every combination, or `draws` different ones of each space."""
 
-    search: Literal["grid", "random"] = "grid"
-    """grid takes every combination of each space, random some."""
+    search: Literal["grid", "random", "sobol"] = "grid"
+    """grid: every combination of each space. random: draws by themselves. sobol: those of a scrambled Sobol
+    sequence, which fills a space more evenly.
+    """
     draws: Count | None = None
-    """Combinations that are drawn from each space. Given exactly when search is random."""
-    seed: int = 0
+    """Different combinations drawn from each space. Given exactly when search is random or sobol."""
+    seed: Annotated[int, Field(ge=0)] = 0
     """Seed of these draws."""
     spaces: tuple[Space, ...]
-    """Keys with lists of values; each space is searched by itself."""
+    """Keys with lists of values, or ranges; each space is searched by itself."""
 
     @model_validator(mode="after")
-    def _draws_belong_to_random(self) -> Self:
-        if (self.search == "random") != (self.draws is not None):
-            raise ValueError("draws is given exactly when search is random")
+    def _draws_belong_to_what_draws(self) -> Self:
+        if (self.search == "grid") == (self.draws is not None):
+            raise ValueError("draws is given exactly when search is random or sobol")
+        return self
+
+    @model_validator(mode="after")
+    def _a_grid_has_values(self) -> Self:
+        for number, space in enumerate(self.spaces):
+            for key, values in space.dimensions().items():
+                if self.search == "grid" and isinstance(values, Range):
+                    raise ValueError(
+                        f"spaces[{number}].{'.'.join(key)}: a range is not allowed where search is grid; "
+                        "allowed: a list of values, or search random or sobol"
+                    )
         return self
 
 
 def _sweep(name: str, architectures: Iterable[type[Architecture]]) -> type[Sweep]:
-    """Sweeps of trials of `architectures`: spaces take a list of values for each setting that these have."""
+    """Sweeps of trials of `architectures`: spaces take values or a range for each setting that these have."""
     types = dimensions(architectures)
     types.pop("sha256", None)  # a file has it, nobody writes it
-    several: dict[str, Any] = {key: (_some(value) | None, None) for key, value in types.items()}
+    several: dict[str, Any] = {key: (_choice(key, value) | None, None) for key, value in types.items()}
     if "options" in types:  # keywords of a class, each varied by itself
-        several["options"] = (GenericAlias(dict, (str, _some(Any))) | None, None)
+        several["options"] = (GenericAlias(dict, (str, _either(_some(Any), OptionRange))) | None, None)
     several["architecture"] = (types["architecture"], ...)
     space = create_model(f"{name}Space", __base__=Space, **several)
     return create_model(f"{name}Sweep", __base__=Sweep, spaces=(_some(space), ...))
@@ -61,6 +165,32 @@ def _sweep(name: str, architectures: Iterable[type[Architecture]]) -> type[Sweep
 def _some(value: Any) -> Any:
     """The type of one or more values of a type."""
     return Annotated[GenericAlias(tuple, (value, ...)), Field(min_length=1)]
+
+
+def _choice(key: str, value: Any) -> Any:
+    """The type of what a space holds for a setting: values and, if they are numbers, a range of them."""
+    plain = value
+    while get_origin(plain) is Annotated:
+        plain = get_args(plain)[0]
+    if key == "hidden":
+        form = create_model("WidthRange", __base__=WidthRange, low=(Count, ...), high=(Count, ...))
+    elif plain in (int, float):
+        form = create_model("Range", __base__=Range, low=(value, ...), high=(value, ...))
+        form.whole = plain is int
+    else:
+        return _some(value)
+    return _either(_some(value), form)
+
+
+def _either(values: Any, form: type[Range]) -> Any:
+    """Values, or a range where keys are given; the tags stand in brackets, as no key does."""
+    return Annotated[
+        Annotated[values, Tag("[values]")] | Annotated[form, Tag("[range]")], Discriminator(_is_range)
+    ]
+
+
+def _is_range(value: Any) -> str:
+    return "[range]" if isinstance(value, Mapping | Range) else "[values]"
 
 
 FieldSweep = _sweep("Field", FIELDS)

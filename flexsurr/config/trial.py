@@ -187,6 +187,18 @@ class LeastSquares(Optimiser):
     """In one step; for polynomials."""
 
 
+class GiveUp(Record):
+    """When a trial is hopeless: in epochs, not in seconds, so that it does not depend on the machine."""
+
+    after_epochs: Count
+    """Epochs that it is given."""
+    above_nmse: Positive
+    """What the least nmse of validation must not be above by then."""
+
+    def __str__(self) -> str:
+        return f"after {self.after_epochs} epochs above {self.above_nmse:g}"
+
+
 class Iterative(Optimiser):
     """Epoch after epoch."""
 
@@ -196,6 +208,9 @@ class Iterative(Optimiser):
     """Ends after so many epochs without better validation (by 1 % or more). None: it does not end by this."""
     time_limit_s: Positive | None = None
     """Ends after this processor time [s]. It makes a result depend on the machine. None: no limit."""
+    # left out where it is not given, so that runs keep the names they had before there was such a setting
+    give_up: GiveUp | None = Field(default=None, exclude_if=lambda value: value is None)
+    """When it ends as hopeless: stopped, neither scored nor chosen. None: never."""
     keep: Literal["best", "last"] = "best"
     """The weights that validated best, or those of the last epoch."""
     seed: Annotated[int, Field(ge=0)] = 0

@@ -22,7 +22,7 @@ from flexsurr.surrogates.coefficient_network import (
 )
 from flexsurr.surrogates.coefficient_polynomial import CoefficientPolynomial, terms
 from flexsurr.training.coefficient_data import CoefficientData
-from flexsurr.training.epochs import Limits, Report, run_epochs
+from flexsurr.training.epochs import Ending, Limits, Report, run_epochs
 from flexsurr.training.fit_result import Fit
 from flexsurr.training.levenberg_marquardt import LevenbergMarquardt
 from flexsurr.training.losses import nmse
@@ -53,7 +53,7 @@ class _Fitted:
     kept: CoefficientNetwork
     best: CoefficientNetwork
     progress: Progress
-    reason: str
+    ending: Ending
 
 
 def fit_coefficients(
@@ -76,16 +76,13 @@ def fit_coefficients(
         side_by_side(networks, data.output_names) if len(networks) > 1 else networks[0]
         for networks in ([fit.kept for fit in fits.values()], [fit.best for fit in fits.values()])
     )
-    reasons = [
-        f"{name}: {fit.reason}" if len(fits) > 1 else fit.reason for name, fit in fits.items() if fit.reason
-    ]
     outputs = [len(fit.kept.output_names) for fit in fits.values()]
     every = [fit.progress for fit in fits.values()]
     return _summary(
         data,
         kept,
         best,
-        reason="; ".join(reasons),
+        ending=Ending.of_all({name: fit.ending for name, fit in fits.items()}),
         epochs=max(progress.epoch for progress in every),
         best_epoch=max(progress.best_epoch for progress in every),
         wall_s=sum(progress.wall_s for progress in every),
@@ -118,7 +115,7 @@ def _polynomial(trial: MapPolynomial, data: CoefficientData, report: Report | No
         data,
         fitted,
         fitted,
-        reason="",
+        ending=Ending(),
         epochs=1,
         best_epoch=1,
         wall_s=spent_s,
@@ -128,7 +125,7 @@ def _polynomial(trial: MapPolynomial, data: CoefficientData, report: Report | No
     )
 
 
-def _summary(data: CoefficientData, kept: Any, best: Any, *, reason: str, **figures: Any) -> Fit:
+def _summary(data: CoefficientData, kept: Any, best: Any, *, ending: Ending, **figures: Any) -> Fit:
     held_out = data.held_out
     errors = [
         np.mean((network(data.u[chosen]) - data.y[chosen]) ** 2, axis=0) / np.var(data.y[chosen], axis=0)
@@ -137,8 +134,8 @@ def _summary(data: CoefficientData, kept: Any, best: Any, *, reason: str, **figu
     return Fit(
         surrogate=kept,
         best=best,
-        status="failed" if reason else "finished",
-        reason=reason,
+        status=ending.status,
+        reason=ending.reason,
         train_nmse=float(errors[0].mean()),
         validation_nmse=float(errors[1].mean()),
         best_validation_nmse=float(errors[2].mean()),
@@ -160,11 +157,11 @@ def _fit_one(trial: MapNetwork, data: CoefficientData, folder: Path, report: Rep
     )
     start = initial_weights(x.shape[1], hidden, y.shape[1], trial.seed)
     optimiser = _optimiser(trial, training, start)
-    progress, reason = run_epochs(
+    progress, ending = run_epochs(
         optimiser,
         validation,
         start,
-        Limits(trial.epochs, trial.patience, trial.time_limit_s),
+        Limits.of(trial),
         folder,
         {"trial": trial.model_dump(mode="json"), "dataset": data.sha256, "outputs": data.output_names},
         report,
@@ -182,7 +179,7 @@ def _fit_one(trial: MapNetwork, data: CoefficientData, folder: Path, report: Rep
         products=products,
     )
     last = replace(best, parameters=optimiser.parameters)
-    return _Fitted(best if reason or trial.keep == "best" else last, best, progress, reason)
+    return _Fitted(best if ending.reason or trial.keep == "best" else last, best, progress, ending)
 
 
 def _fit_groups(

@@ -1,22 +1,24 @@
 """What training comes to, of a field or of a map."""
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 import pandas as pd
+
+from flexsurr.training.epochs import Status
 
 
 @dataclass(frozen=True, eq=False)
 class Fit:
     """What a trial came to: the surrogate that the trial keeps, and the one that validated best.
 
-    `final_loss` is the last epoch's, as trained; all others are the nmse. A failed fit holds the best weights
-    it met: at epoch 0, the random ones it began with. Of a map the states are its outputs.
+    `final_loss` is the last epoch's, as trained; all others are the nmse. A fit that did not finish holds
+    the best weights it met: at epoch 0, the random ones it began with. Of a map the states are its outputs.
     """
 
     surrogate: Any
     best: Any
-    status: Literal["finished", "failed"]
+    status: Status
     reason: str
     epochs: int
     best_epoch: int

@@ -62,8 +62,8 @@ def fit(trial: Trial, source: SampleSource, folder: str | Path, report: Report |
     `time_limit_s` of processor time, or when the optimiser has nothing left to do, and keeps the weights
     that validated best, or the last ones. `report(epoch, train_loss, validation_loss, wall_s)` is called
     after each epoch. A loss that is not finite ends the fit as failed, and a fit of which no epoch
-    validates better than its start has failed too. Interrupted and resumed, the weights are those of an
-    uninterrupted run (unless the time limit ends it).
+    validates better than its start has failed too; one that is hopeless by `give_up` is stopped.
+    Interrupted and resumed, the weights are those of an uninterrupted run (unless the time limit ends it).
     """
     folder = Path(folder)
     if isinstance(trial, FieldPolynomial):
@@ -71,24 +71,24 @@ def fit(trial: Trial, source: SampleSource, folder: str | Path, report: Report |
     assert isinstance(trial, Iterative)  # as everything but a polynomial is
     dataset = source.loaded()
     network, training, validation, optimiser = _begun(trial, dataset)
-    progress, reason = run_epochs(
+    progress, ending = run_epochs(
         optimiser,
         validation,
         network.parameters,
-        Limits(trial.epochs, trial.patience, trial.time_limit_s),
+        Limits.of(trial),
         folder,
         {"trial": trial.model_dump(mode="json"), "dataset": dataset.sha256},
         report,
     )
     best = replace(network, parameters=progress.best_parameters)
     last = replace(network, parameters=optimiser.parameters.astype(np.float64))
-    network = best if reason or trial.keep == "best" else last
+    network = best if ending.reason or trial.keep == "best" else last
     errors = FieldErrors.over(network, dataset.validation_blocks())
     return Fit(
         surrogate=network,
         best=best,
-        status="failed" if reason else "finished",
-        reason=reason,
+        status=ending.status,
+        reason=ending.reason,
         epochs=progress.epoch,
         best_epoch=progress.best_epoch,
         wall_s=progress.wall_s,

@@ -3,35 +3,36 @@
 import hashlib
 import itertools
 import json
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flexsurr.config.own_network import own_network
-from flexsurr.config.sweep import Space, Sweep
+from flexsurr.config.sweep import Range, Space, Sweep
 from flexsurr.config.trial import Trial, trial_of
 
 DIGITS = 10
+
+Combination = dict[tuple[str, ...], Any]
+"""One value of each dimension of a space."""
 
 
 def expand(sweep: Sweep, sha256: Mapping[str, str] = MappingProxyType({})) -> list[Trial]:
     """The trials of `sweep`, in its order, none twice; `sha256` has those of the user's own architectures.
 
-    grid: every combination of every space. random: `draws` different combinations of each space, by its
-    seed; all of a space that has no more. Raises ValueError naming the space and the first combination
-    that makes no trial.
+    grid: every combination of every space. random, sobol: `draws` different combinations of each space, by
+    the seed and the space's number; all of a space that has no more. One draw more leaves those before it
+    as they are. Raises ValueError naming the space and the first combination that makes no trial.
     """
-    generator = np.random.default_rng(sweep.seed)
     trials: dict[str, Trial] = {}
     for number, space in enumerate(sweep.spaces, start=1):
-        combinations = _combinations(space)
-        if sweep.draws is not None and sweep.draws < len(combinations):
-            chosen = generator.choice(len(combinations), size=sweep.draws, replace=False)
-            combinations = [combinations[place] for place in sorted(chosen.tolist())]
-        for combination in combinations:
-            trial = _trial(number, combination, sha256.get(space.architecture))
+        for combination in _combinations(sweep, number, space):
+            settings = {"architecture": space.architecture, **_settings(combination)}
+            trial = _trial(number, settings, sha256.get(space.architecture))
             trials.setdefault(_canonical(trial.model_dump(mode="json")), trial)
     return list(trials.values())
 
@@ -53,22 +54,57 @@ def _canonical(content: Mapping[str, Any]) -> str:
     return json.dumps(content, sort_keys=True, separators=(",", ":"))
 
 
-def _combinations(space: Space) -> list[dict[str, Any]]:
-    values = space.model_dump(exclude_none=True)
-    architecture = values.pop("architecture")
-    if "options" in values:
-        values["options"] = _products(values["options"])
-    return [{"architecture": architecture, **combination} for combination in _products(values)]
+def _combinations(sweep: Sweep, number: int, space: Space) -> list[Combination]:
+    dimensions = space.dimensions()
+    sizes = [values.count if isinstance(values, Range) else len(values) for values in dimensions.values()]
+    if sweep.draws is not None and sweep.draws < math.prod(sizes):
+        return _drawn(sweep, number, dimensions)
+    every = (values.every() if isinstance(values, Range) else values for values in dimensions.values())
+    return [dict(zip(dimensions, chosen, strict=True)) for chosen in itertools.product(*every)]
 
 
-def _products(values: Mapping[str, Sequence[Any]]) -> list[dict[str, Any]]:
-    """Every combination of one value of each key."""
-    return [dict(zip(values, chosen, strict=True)) for chosen in itertools.product(*values.values())]
+def _drawn(sweep: Sweep, number: int, dimensions: Mapping[tuple[str, ...], Any]) -> list[Combination]:
+    """As many different combinations as are to be drawn: there must be more."""
+    varied = {
+        key: values for key, values in dimensions.items() if isinstance(values, Range) or len(values) > 1
+    }
+    fixed = {key: values[0] for key, values in dimensions.items() if key not in varied}
+    found: dict[str, Combination] = {}
+    for shares in _shares(sweep, number, len(varied)):
+        chosen = {
+            key: values.at(share) if isinstance(values, Range) else values[int(share * len(values))]
+            for (key, values), share in zip(varied.items(), shares.tolist(), strict=True)
+        }
+        found.setdefault(repr(list(chosen.values())), {**fixed, **chosen})
+        if len(found) == sweep.draws:
+            break
+    return list(found.values())
 
 
-def _trial(number: int, combination: dict[str, Any], sha256: str | None) -> Trial:
+def _shares(sweep: Sweep, number: int, dimensions: int) -> Iterator[NDArray[np.float64]]:
+    """Points (dimensions,) of the unit cube, one after the other without an end."""
+    generator = np.random.default_rng([sweep.seed, number])
+    if sweep.search == "random":
+        while True:
+            yield generator.random(dimensions)
+    from scipy.stats.qmc import Sobol  # here, for scipy.stats takes a second to import
+
+    sequence = Sobol(dimensions, scramble=True, rng=generator)
+    while True:
+        # twice as many each time: the sequence is even over powers of two
+        yield from sequence.random(max(sequence.num_generated, 1))
+
+
+def _settings(combination: Combination) -> dict[str, Any]:
+    """The settings of a trial, the keywords of a class of the user's own together."""
+    settings = {key[0]: value for key, value in combination.items() if len(key) == 1}
+    options = {key[1]: value for key, value in combination.items() if len(key) > 1}
+    return settings | ({"options": options} if options else {})
+
+
+def _trial(number: int, settings: dict[str, Any], sha256: str | None) -> Trial:
     try:
-        return trial_of(**combination, sha256=sha256)
+        return trial_of(**settings, sha256=sha256)
     except ValueError as error:
-        shown = ", ".join(f"{key}: {value}" for key, value in combination.items())
+        shown = ", ".join(f"{key}: {value}" for key, value in settings.items())
         raise ValueError(f"spaces, number {number} ({shown}): {error}") from None

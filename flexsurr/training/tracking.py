@@ -177,8 +177,8 @@ def tracked(store: Store | None, study: str, run_key: str, parameters: Mapping[s
     """A child run of the study's sweeps for the time of the block; without a store, a trial untold.
 
     A run of the same key that an earlier, killed job left RUNNING is ended and deleted. The run ends
-    FINISHED, or FAILED with its reason as a tag where the trial says so or an exception passes, or
-    KILLED where the process is told to stop.
+    FINISHED, also where it was stopped as hopeless, or FAILED where the trial says so or an exception
+    passes, both with their reason as a tag, or KILLED where the process is told to stop.
     """
     trial = Trial()
     page = _Page(store)
@@ -193,7 +193,7 @@ def tracked(store: Store | None, study: str, run_key: str, parameters: Mapping[s
                 lambda client, _: _keep(client, run, metrics, tags, files)
             )
         yield trial
-        status = "FINISHED" if trial.status == "finished" else "FAILED"
+        status = "FAILED" if trial.status == "failed" else "FINISHED"
     except Exception as error:
         status, trial.reason = "FAILED", f"{type(error).__name__}: {error}"
         raise

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from fnmatch import fnmatch
 from functools import cached_property
+from pathlib import Path
 
 from flexsurr.config.settings import Configuration
 from flexsurr.config.sources import AnyStudy, ResolvedSampleStudy, ResolvedStudy
@@ -13,6 +14,9 @@ from flexsurr.workflow.study_plan import Job, Run
 from flexsurr.workflow.trajectory_plan import TrajectoryPlan
 
 AnyPlan = TrajectoryPlan | FilesPlan | SamplePlan
+
+FIT = "fit.json"
+"""The file of a run that says that it has been trained."""
 
 OF_RUNS = {"metrics": "metrics.json", "history": "history.parquet"}
 """The file of each run that a figure or table reads."""
@@ -57,6 +61,15 @@ class Plan:
             job = getattr(self.studies[first], rule)(*others)
         return job
 
+    def trials(self, runs: Path) -> list[str]:
+        """A line for each study: how many trials it has, and how many are new, without a fit below `runs`."""
+        lines = []
+        for name, study in self.studies.items():
+            new = sum(not (runs / key / FIT).is_file() for key in study.runs)
+            count = len(study.runs)
+            lines.append(f"{name}: {count} trial{'s' * (count != 1)}, {new or 'none'} of them new")
+        return lines
+
     def store(self) -> Job:
         """The tracking store."""
         return {"uri": self.settings.tracking.uri, "studies": list(self.settings.studies)}
@@ -83,7 +96,7 @@ class Plan:
 
     def files(self, study: str, read: str) -> list[str]:
         """The files below the results that hold what a product of flexsurr.report `read`s."""
-        if read == "structure" or read in OF_AIRCRAFT:
+        if read in ("structure", "sweeps") or read in OF_AIRCRAFT:
             return []
         if read == "relatives":
             return [file for name in self._relatives(study) for file in self.files(name, "metrics")]

@@ -151,7 +151,19 @@ BAD_VALUES = [
     (SWEEP, "spaces.1.optimiser", ["adam"], ["adam takes learning_rate and batch_size"]),
     (SWEEP, "spaces.1.degree", [4], ["degree does nothing with hnn"]),
     (SWEEP, "spaces", [], ["spaces", "[]", "at least one value"]),
-    (SWEEP, "search", "random", ["draws is given exactly when search is random"]),
+    (SWEEP, "search", "random", ["draws is given exactly when search is random or sobol"]),
+    (SWEEP, "search", "sobl", ["search", "'sobl'", "did you mean 'sobol'"]),
+    (SWEEP, "seed", -1, ["seed", "-1", "0"]),
+    (SWEEP, "spaces.0.degree", {"low": 2, "high": 6}, ["spaces[0].degree", "search is grid", "sobol"]),
+    (SWEEP, "spaces.0.degree", {"low": 6, "high": 6}, ["spaces[0].degree", "low: 6", "below high, 6"]),
+    (SWEEP, "spaces.0.degree", {"low": 0, "high": 6}, ["spaces[0].degree.low", "0", "1"]),
+    (SWEEP, "spaces.0.degree", {"low": 2.5, "high": 6}, ["spaces[0].degree.low", "2.5", "integer"]),
+    (SWEEP, "spaces.0.degree", {"low": 2, "hihg": 6}, ["spaces[0].degree.hihg", "did you mean 'high'"]),
+    (SWEEP, "spaces.1.seed", {"low": 0, "high": 6, "scale": "log"}, ["spaces[1].seed", "above 0"]),
+    (SWEEP, "spaces.1.hidden", {"low": [8], "high": 9}, ["spaces[1].hidden.low", "[8]", "integer"]),
+    (SWEEP, "spaces.1.activation", {"low": 1, "high": 9}, ["spaces[1].activation", "list of values"]),
+    (SWEEP, "spaces.1.give_up", [{"after_epochs": 5}], ["spaces[1].give_up[0].above_nmse", "missing"]),
+    (SWEEP, "spaces.1.give_up", {"after_epochs": 5}, ["spaces[1].give_up", "list of values"]),
 ]
 
 

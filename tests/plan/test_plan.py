@@ -123,6 +123,37 @@ def test_a_new_value_of_the_sweep_adds_its_runs_and_leaves_the_others(root):
     assert {name for name in before if before[name] != after[name]} == {f"select {BEAM}"}
 
 
+def test_without_a_value_of_the_sweep_the_other_runs_stay_as_they_are(root):
+    change(root, SWEEP, "spaces.3.degree", [4, 6])
+    before = jobs(root)
+    change(root, SWEEP, "spaces.3.degree", [4])
+    after = jobs(root)
+    gone = before.keys() - after.keys()
+    assert sorted(name.split("-")[0] for name in gone) == ["score polynomial"] * 2 + ["train polynomial"] * 2
+    assert {name for name in after if before[name] != after[name]} == {f"select {BEAM}"}
+
+
+def test_the_plan_says_how_many_trials_are_new(root, tmp_path):
+    runs = tmp_path / "runs"
+    p = plan(root)
+    studies = {name: list(study.runs) for name, study in p.studies.items()}
+    assert p.trials(runs) == [
+        f"{name}: {len(keys)} trial{'s' * (len(keys) > 1)}, {len(keys)} of them new"
+        for name, keys in studies.items()
+    ]
+    for key in studies[BEAM]:
+        (runs / key).mkdir(parents=True)
+        (runs / key / "fit.json").touch()
+    line = f"{BEAM}: {len(studies[BEAM])} trials, none of them new"
+    assert line in p.trials(runs)
+    change(root, SWEEP, "spaces.3.degree", [4, 6])
+    line = f"{BEAM}: {len(studies[BEAM]) + 2} trials, 2 of them new"
+    assert line in plan(root).trials(runs)
+    (runs / studies[BEAM][0] / "fit.json").unlink()
+    line = f"{BEAM}: {len(studies[BEAM]) + 2} trials, 3 of them new"
+    assert line in plan(root).trials(runs)
+
+
 def test_what_samples_configurations_needs_no_data_and_no_simulation(root):
     before, p = jobs(root), plan(root)
     (free, *_) = beam(p).select()["sweeps"]["data_free"]

@@ -77,6 +77,14 @@ def test_a_failed_trial_says_why(made):
     assert run.data.tags["reason"] == "the loss left the finite numbers at epoch 3"
 
 
+def test_a_trial_stopped_as_hopeless_has_finished_and_says_why(made):
+    with tracked(made, "cantilever", "hnn-4", {}) as trial:
+        trial.status, trial.reason = "stopped", "the best validation nmse was 0.9 after 5 epochs, above 0.5"
+    run = run_of(made, "hnn-4")
+    assert run.info.status == "FINISHED"
+    assert run.data.tags["reason"].endswith("above 0.5")
+
+
 def test_an_exception_passes_and_is_recorded(made):
     with pytest.raises(RuntimeError, match="boom"), tracked(made, "cantilever", "hnn-3", {}):
         raise RuntimeError("boom")

@@ -12,7 +12,7 @@ from flexsurr.aerodynamics.features import (
     FEATURES,
     OUTPUT_GROUPS,
 )
-from flexsurr.config.trial import trial_of
+from flexsurr.config.trial import GiveUp, trial_of
 from flexsurr.storage import SampleMetadata, Samples
 from flexsurr.surrogates.coefficient_polynomial import (
     load_coefficient_polynomial,
@@ -21,6 +21,7 @@ from flexsurr.surrogates.coefficient_polynomial import (
 from flexsurr.training.coefficient_accuracy import accuracy, held_out_errors
 from flexsurr.training.coefficient_data import coefficient_data
 from flexsurr.training.coefficient_fit import fit_coefficient_polynomial, fit_coefficients
+from flexsurr.training.epochs import Ending
 
 LOW, HIGH = np.array([-2.0, 0.0, 100.0]), np.array([1.0, 0.5, 300.0])
 
@@ -135,6 +136,22 @@ def test_four_networks_are_the_four_fits_of_their_outputs(tmp_path):
         np.testing.assert_allclose(fit.surrogate(data.u)[:, places], alone.surrogate(data.u), atol=1e-12)
         losses = fit.history.loc[fit.history["outputs"] == name, "train_loss"]
         np.testing.assert_array_equal(losses, alone.history["train_loss"])
+
+
+def test_of_four_networks_the_worst_end_is_that_of_all_with_every_reason():
+    given_up, blown = Ending("stopped", "above 0.5"), Ending("failed", "not finite")
+    assert Ending.of_all({"drag": Ending(), "modal": Ending()}) == Ending()
+    assert Ending.of_all({"all": given_up}) == given_up
+    assert Ending.of_all({"drag": Ending(), "modal": given_up}) == Ending("stopped", "modal: above 0.5")
+    both = Ending.of_all({"drag": blown, "modal": given_up})
+    assert both == Ending("failed", "drag: not finite; modal: above 0.5")
+
+
+def test_a_hopeless_map_is_stopped(tmp_path):
+    rule = GiveUp(after_epochs=3, above_nmse=1e-9)
+    result = fit_coefficients(TRIAL.model_copy(update={"give_up": rule}), DATA, tmp_path)
+    assert (result.status, result.epochs) == ("stopped", 3)
+    assert "above 1e-09" in result.reason
 
 
 def test_with_second_order_terms_a_product_of_two_features_is_learned_by_less(tmp_path):

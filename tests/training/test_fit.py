@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from oscillator import free_responses
 
-from flexsurr.config.trial import trial_of
+from flexsurr.config.trial import GiveUp, trial_of
 from flexsurr.surrogates import load, save
 from flexsurr.training import fit, nmse
 from flexsurr.training.checkpoint import NAME
@@ -149,6 +149,37 @@ def test_a_rate_that_only_makes_it_worse_is_a_failure_with_a_reason(tmp_path):
     result = fit(ADAM.model_copy(update={"learning_rate": 1e6}), DATASET, tmp_path)
     assert result.status == "failed"
     assert "validated better" in result.reason
+
+
+def test_a_hopeless_trial_is_stopped_after_the_epochs_it_was_given(tmp_path):
+    slow = ADAM.model_copy(update={"learning_rate": 1e-6})
+    whole = fit(slow, DATASET, tmp_path)
+    level = float(whole.history.validation_loss[:7].min())
+    for above, epochs, status in ((0.99 * level, 7, "stopped"), (level, slow.epochs, "finished")):
+        trial = slow.model_copy(update={"give_up": GiveUp(after_epochs=7, above_nmse=above)})
+        result = fit(trial, DATASET, tmp_path)
+        assert (result.status, result.epochs) == (status, epochs)
+        assert bool(result.reason) == (status == "stopped")
+    assert whole.epochs == slow.epochs
+
+
+@pytest.mark.parametrize("killed_at", [None, 3])
+def test_stopped_as_hopeless_it_keeps_its_best_weights_killed_before_or_not(killed_at, tmp_path, monkeypatch):
+    monkeypatch.setattr("flexsurr.training.epochs.CHECKPOINT_EVERY_S", 0.0)
+    rule = GiveUp(after_epochs=5, above_nmse=1e-9)
+    trial = LM.model_copy(update={"give_up": rule, "keep": "last"})
+    if killed_at is not None:
+        with pytest.raises(Killed):
+            fit(trial, DATASET, tmp_path, kill_at(killed_at))
+    result = fit(trial, DATASET, tmp_path)
+    assert (result.status, result.epochs) == ("stopped", 5)
+    assert result.reason.endswith("after 5 epochs, above 1e-09")
+    assert result.validation_nmse == result.best_validation_nmse
+    np.testing.assert_array_equal(
+        result.surrogate.parameters,
+        fit(LM.model_copy(update={"epochs": 5}), DATASET, tmp_path).best.parameters,
+    )
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("trial", [LM, POLYNOMIAL])

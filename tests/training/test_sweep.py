@@ -3,9 +3,10 @@
 import itertools
 import re
 
+import numpy as np
 import pytest
 
-from flexsurr.config.sweep import FieldSweep, MapSweep
+from flexsurr.config.sweep import FieldSweep, MapSweep, Range
 from flexsurr.config.trial import (
     FIELDS,
     MAPS,
@@ -46,6 +47,87 @@ def test_random_draws_are_seeded_different_and_of_the_grid():
     assert any(set(other) != set(trials) for other in others)
 
 
+RANGES = {
+    "architecture": "hnn",
+    "hidden": {"low": 4, "high": 64, "scale": "log"},
+    "activation": ("softplus", "elu"),
+    "optimiser": ("adam",),
+    "learning_rate": {"low": 1e-4, "high": 1e-1, "scale": "log"},
+    "batch_size": {"low": 16, "high": 18},
+}
+
+
+@pytest.mark.parametrize("search", ["random", "sobol"])
+def test_draws_lie_in_their_ranges_differ_and_are_of_their_seed(search):
+    sweep = FieldSweep(search=search, draws=64, seed=3, spaces=(RANGES,))
+    trials = expand(sweep)
+    assert trials == expand(sweep)
+    assert len(set(trials)) == 64
+    assert {trial.batch_size for trial in trials} == {16, 17, 18}
+    assert {trial.activation for trial in trials} == {"softplus", "elu"}
+    widths = [trial.hidden[0] for trial in trials]
+    assert 4 <= min(widths) < max(widths) <= 64
+    rates = np.array([trial.learning_rate for trial in trials])
+    assert 1e-4 <= rates.min() < rates.max() <= 1e-1
+    # by equal ratios: as many in each decade
+    assert all(10 < ((rates >= low) & (rates < 10.0 * low)).sum() < 32 for low in (1e-4, 1e-3, 1e-2))
+    assert rates.tolist() == [float(f"{rate:.6g}") for rate in rates]
+    assert set(expand(sweep.model_copy(update={"seed": 4}))).isdisjoint(trials)
+
+
+@pytest.mark.parametrize("search", ["random", "sobol"])
+@pytest.mark.parametrize("space", [RANGES, NETWORKS | {"seed": tuple(range(20))}])
+def test_a_draw_more_leaves_those_before_it(search, space):
+    few, more = (expand(FieldSweep(search=search, draws=draws, spaces=(space,))) for draws in (5, 23))
+    assert more[:5] == few
+    both = expand(FieldSweep(search=search, draws=5, spaces=(space, POLYNOMIALS)))
+    assert both[:5] == few
+
+
+def test_a_sobol_sequence_is_even_where_chance_is_not():
+    """Of 64 points every sixteenth of a dimension holds four."""
+
+    def most(search):
+        trials = expand(FieldSweep(search=search, draws=64, spaces=(RANGES,)))
+        decades = np.log10([trial.learning_rate for trial in trials]) + 4.0
+        return np.bincount((decades / 3.0 * 16.0).astype(int), minlength=16).max()
+
+    assert most("sobol") <= 5 < most("random")
+
+
+def test_a_range_of_no_more_whole_numbers_than_draws_gives_all_of_them():
+    space = POLYNOMIALS | {"degree": {"low": 2, "high": 6}}
+    trials = expand(FieldSweep(search="sobol", draws=5, spaces=(space,)))
+    assert [trial.degree for trial in trials] == [2, 3, 4, 5, 6]
+    widths = {"architecture": "hnn", "hidden": {"low": 3, "high": 4}, "activation": ["elu"]}
+    assert [trial.hidden for trial in expand(FieldSweep(search="random", draws=9, spaces=(widths,)))] == [
+        (3,),
+        (4,),
+    ]
+
+
+class WholeRange(Range):
+    whole = True
+
+
+@pytest.mark.parametrize(("scale", "room"), [("linear", [1.0] * 4), ("log", np.diff(np.log(range(1, 6))))])
+def test_a_whole_number_is_drawn_as_often_as_it_has_room(scale, room):
+    degree = WholeRange(low=1, high=4, scale=scale)
+    drawn = np.bincount([degree.at(share) for share in np.arange(1000) / 1000.0], minlength=5)
+    np.testing.assert_allclose(drawn[1:] / 1000.0, room / np.sum(room), atol=2e-3)
+
+
+def test_keywords_of_ones_own_network_have_ranges_too():
+    options = {
+        "width": {"low": 2, "high": 9, "integer": True},
+        "gain": {"low": 0.1, "high": 10, "scale": "log"},
+    }
+    trials = expand(FieldSweep(search="sobol", draws=8, spaces=[{"architecture": OWN, "options": options}]))
+    assert all(isinstance(trial.options["width"], int) for trial in trials)
+    assert {trial.options["width"] for trial in trials} == set(range(2, 10))
+    assert all(0.1 <= trial.options["gain"] <= 10.0 for trial in trials)
+
+
 def test_a_value_more_keeps_the_other_runs():
     before = expand(FieldSweep(spaces=(NETWORKS,)))
     wider = NETWORKS | {"activation": ("softplus", "elu", "silu")}
@@ -81,6 +163,8 @@ def test_run_ids_name_their_content():
 
 def test_run_ids_do_not_change_unnoticed():
     """A change of these names reruns every run there is: intended, or a mistake."""
+    network = trial_of(architecture="hnn", hidden=(8,), activation="elu")
+    assert run_id(network, "cantilever", "hamiltonian", "0123456789abcdef") == "hnn-325f28cf81"
     trial = trial_of(architecture="polynomial", degree=6, optimiser="least_squares")
     assert run_id(trial, "cantilever", "hamiltonian", "0123456789abcdef") == "polynomial-1b1fecd594"
 
@@ -219,6 +303,17 @@ def test_a_space_may_vary_whatever_a_trial_takes(kind, sweep):
     taken -= {"sha256"}  # that of a file, which nobody writes
     (space,) = sweep(spaces=({"architecture": named(kind, "architecture")[0]},)).spaces
     assert type(space).model_fields.keys() == dimensions(kind).keys() - {"sha256"} == taken
+
+
+def test_when_to_give_up_is_a_setting_like_any_other():
+    rules = ({"after_epochs": 5, "above_nmse": 0.5}, {"after_epochs": 9, "above_nmse": 0.5})
+    trials = expand(FieldSweep(spaces=(NETWORKS | {"give_up": rules},)))
+    assert len(trials) == 2 * len(expand(FieldSweep(spaces=(NETWORKS,))))
+    assert len({run_id(trial, "s", "v", "d") for trial in trials}) == len(trials)
+    assert str(trials[0].give_up) == "after 5 epochs above 0.5"
+    assert trial_of(**trials[0].model_dump(mode="json")) == trials[0]
+    with pytest.raises(ValueError, match="give_up does nothing with least_squares"):
+        trial_of(architecture="polynomial", degree=4, optimiser="least_squares", give_up=rules[0])
 
 
 def test_every_setting_of_a_trial_is_recorded():

@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
+from snakemake.logging import logger
 
 from flexsurr.config.errors import ConfigurationError
 from flexsurr.config.settings import load
@@ -40,6 +41,11 @@ except ConfigurationError as error:
 TIMING_CORES = plan.settings.timing.cores or workflow.resource_settings.cores or 1
 RESULTS = plan.settings.results
 STUDIES = list(plan.settings.studies)
+
+# Jobs that go elsewhere read this file too; one reader needs to know.
+if workflow.is_main_process:
+    for line in plan.trials(Path(RESULTS) / "runs"):
+        logger.info(line)
 
 
 def write(name, job):
