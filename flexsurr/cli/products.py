@@ -29,6 +29,8 @@ def text_of(caption: Path) -> str:
 def _read(read: str, job: Job, files: Sequence[Path]) -> Any:
     if read == "structure":
         return Structure.model_validate(job["structure"])
+    if read == "sweeps":
+        return job["sweeps"]
     if read in ("metrics", "relatives"):
         return pd.DataFrame([read_run(path) for path in files])
     if read == "history":

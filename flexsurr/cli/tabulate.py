@@ -5,7 +5,8 @@ from pathlib import Path
 from flexsurr.cli.command import Job, command
 from flexsurr.cli.products import arguments, text_of
 from flexsurr.report.catalogue import TABLES
-from flexsurr.report.tables import TABULATE, save_page, save_table
+from flexsurr.report.pages import save_page
+from flexsurr.report.tables import TABULATE, save_table
 
 
 def main(job: Job, results: Path, caption: Path, output: Path) -> None:

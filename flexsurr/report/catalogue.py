@@ -6,6 +6,7 @@ A product says what it `reads`, in the order of its function's arguments:
 |---|---|
 | structure | the study's `Structure` |
 | metrics | one row for each run of the study: its metrics.json |
+| sweeps | the run_ids of each sweep of the study |
 | relatives | the same of every study of the same structure |
 | history | all runs' history.parquet, with a column run_id |
 | free_modes, lattice, doublet | of the study's aircraft: modes, vortex lattice, times of a doublet |
@@ -49,6 +50,7 @@ SIMULATED = ("trajectories",)
 FILES = ("files",)
 SAMPLES = ("samples",)
 OF_FIELDS = (*SIMULATED, *FILES)
+EVERY_SOURCE = (*OF_FIELDS, *SAMPLES)
 
 OF_AIRCRAFT = frozenset({"free_modes", "lattice", "doublet"})
 """What is read of the aircraft of a study of samples."""
@@ -95,6 +97,7 @@ FIGURES: dict[str, Product] = {
     "phase_plane": Product("Rollouts in the phase plane", ("rollout_curves",), sources=FILES),
     "training_loss": Product("Training loss against wall time", ("history", "metrics"), sources=OF_FIELDS),
     "training_epochs": Product("Training loss against epochs", ("history", "metrics"), sources=OF_FIELDS),
+    "trials": Product("Trials: settings against error", ("sweeps", "metrics"), sources=EVERY_SOURCE),
     "figure_16": Product("The airliner and its panels", ("free_modes", "lattice"), sources=SAMPLES),
     "figure_17": Product("Distribution of mass", ("free_modes",), sources=SAMPLES),
     "figure_18": Product("Eigenvalues in trim", ("modes",), sources=SAMPLES),
@@ -114,7 +117,8 @@ FIGURES: dict[str, Product] = {
 TABLES: dict[str, Product] = {
     "static_tip": Product("Tip under static loads", ("statics",)),
     "natural_frequencies": Product("Natural frequencies", ("frequencies",)),
-    "training": Product("Training runs", ("metrics",), sources=(*OF_FIELDS, *SAMPLES)),
+    "sweeps": Product("Sweeps, and what came of them", ("sweeps", "metrics"), sources=EVERY_SOURCE),
+    "training": Product("Training runs", ("metrics",), sources=EVERY_SOURCE),
     "architectures": Product("Every architecture in every setting", ("metrics",), sources=OF_FIELDS),
     "seeds": Product("Mean and spread over seeds", ("metrics",), sources=OF_FIELDS),
     "cost": Product("Cost and accuracy", ("cost-*",), sources=(*SIMULATED, *SAMPLES)),

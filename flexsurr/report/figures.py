@@ -27,6 +27,7 @@ from flexsurr.report.response_figures import figure_10, figure_12, figure_14, fi
 from flexsurr.report.rollout_figures import phase_plane, rollouts
 from flexsurr.report.schematics import figure_05, figure_06, figure_07, figure_11
 from flexsurr.report.training_figures import training_epochs, training_loss
+from flexsurr.report.trial_figures import trials
 
 DRAW: dict[str, Callable[..., Figure]] = {
     draw.__name__: draw
@@ -56,6 +57,7 @@ DRAW: dict[str, Callable[..., Figure]] = {
         phase_plane,
         training_loss,
         training_epochs,
+        trials,
         figure_16,
         figure_17,
         figure_18,

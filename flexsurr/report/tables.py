@@ -1,6 +1,5 @@
-"""The tables: data frames whose columns are a contract, their files, and a page to read each on."""
+"""The tables: data frames whose columns are a contract, and their files."""
 
-import html
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -17,6 +16,7 @@ from flexsurr.evaluation.columns import (
 from flexsurr.evaluation.published import published_loss
 from flexsurr.report.architectures import architectures
 from flexsurr.report.seeds import seeds
+from flexsurr.report.sweeps import sweeps
 from flexsurr.storage import replacing
 
 TRAINING_COLUMNS = (
@@ -40,8 +40,11 @@ TRAINING_COLUMNS = (
     "keep",
     "patience",
     "time_limit_s",
+    "give_up",
     "seed",
     "dataset",
+    "status",
+    "reason",
     "epoch_limit",
     "epochs",
     "best_epoch",
@@ -109,7 +112,7 @@ def natural_frequencies(frequencies: pd.DataFrame) -> pd.DataFrame:
 
 
 def training(metrics: pd.DataFrame) -> pd.DataFrame:
-    """training.csv: every run, failed ones with empty losses; best validation first in each variant."""
+    """training.csv: every run, also those that did not finish; best validation first in each variant."""
     published = [
         published_loss({str(key): value for key, value in run.items()}) for run in metrics.to_dict("records")
     ]
@@ -154,11 +157,12 @@ def as_it_is(frame: pd.DataFrame) -> pd.DataFrame:
     return frame
 
 
-TABULATE: dict[str, Callable[[pd.DataFrame], pd.DataFrame]] = {
+TABULATE: dict[str, Callable[..., pd.DataFrame]] = {
     tabulate.__name__: tabulate
     for tabulate in (
         static_tip,
         natural_frequencies,
+        sweeps,
         training,
         architectures,
         seeds,
@@ -177,32 +181,8 @@ TABULATE: dict[str, Callable[[pd.DataFrame], pd.DataFrame]] = {
 
 def save_table(frame: pd.DataFrame, path: Path) -> None:
     """Write `frame` as CSV, nine significant digits, there whole or not at all."""
-    _write(path, frame.to_csv(index=False, float_format="%.9g", lineterminator="\n"))
-
-
-def save_page(frame: pd.DataFrame, title: str, caption: str, path: Path) -> None:
-    """Write `frame` as a page of HTML with a title and a caption, there whole or not at all."""
-    _write(path, page(frame, title, caption))
-
-
-def page(frame: pd.DataFrame, title: str, caption: str) -> str:
-    """A self-contained HTML page: title, caption, table. Numbers with four digits; empty where unknown."""
-    numeric = [pd.api.types.is_numeric_dtype(frame[name]) for name in frame.columns]
-    head = "".join(
-        f'<th class="{"number" if is_number else "word"}">{_heading(name)}</th>'
-        for name, is_number in zip(frame.columns, numeric, strict=True)
-    )
-    rows = []
-    for values in frame.itertuples(index=False):
-        cells = (
-            f'<td class="number">{_number(value)}</td>'
-            if is_number
-            else f"<td>{html.escape(_word(value))}</td>"
-            for value, is_number in zip(values, numeric, strict=True)
-        )
-        rows.append(f"<tr>{''.join(cells)}</tr>")
-    body = "\n".join(rows)
-    return _PAGE.format(title=html.escape(title), caption=html.escape(caption), head=head, body=body)
+    with replacing(path) as beside:
+        frame.to_csv(beside, index=False, float_format="%.9g", lineterminator="\n")
 
 
 def _columns(frame: pd.DataFrame, names: Sequence[str]) -> pd.DataFrame:
@@ -211,53 +191,3 @@ def _columns(frame: pd.DataFrame, names: Sequence[str]) -> pd.DataFrame:
     if missing:
         raise KeyError(f"columns missing: {', '.join(missing)}")
     return frame[list(names)].reset_index(drop=True)
-
-
-def _heading(name: str) -> str:
-    """The column's name, which may break after an underscore."""
-    return html.escape(name).replace("_", "_<wbr>")
-
-
-def _number(value: float) -> str:
-    if pd.isna(value):
-        return ""
-    return f"{value:.4g}".replace("e-0", "e-").replace("e+0", "e+")
-
-
-def _word(value: object) -> str:
-    return "" if value is None or (isinstance(value, float) and pd.isna(value)) else str(value)
-
-
-def _write(path: Path, text: str) -> None:
-    with replacing(path) as beside:
-        beside.write_text(text, encoding="utf-8")
-
-
-_PAGE = """<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<title>{title}</title>
-<style>
-body {{ font: 14px/1.45 system-ui, sans-serif; margin: 2em; color: #1b1b1b; }}
-p {{ max-width: 60em; }}
-table {{ border-collapse: collapse; font-size: 12.5px; }}
-th {{ position: sticky; top: 0; background: #fff; border-bottom: 1.5px solid #000; text-align: left;
-  vertical-align: bottom; padding: 4px 10px; max-width: 9em; }}
-td {{ padding: 2px 10px; border-bottom: 1px solid #e4e4e4; white-space: nowrap; }}
-th.number, td.number {{ text-align: right; font-variant-numeric: tabular-nums; }}
-tr:hover td {{ background: #f3f6fa; }}
-</style>
-</head>
-<body>
-<h1>{title}</h1>
-<p>{caption}</p>
-<table>
-<thead><tr>{head}</tr></thead>
-<tbody>
-{body}
-</tbody>
-</table>
-</body>
-</html>
-"""

@@ -122,8 +122,9 @@ class SamplePlan(StudyPlan):
         return {**super().select(), "maps": True}
 
     def values_for(self, product: Product) -> Job:
-        """The aircraft, where a figure draws it."""
-        return {} if OF_AIRCRAFT.isdisjoint(product.reads) else {"aircraft": self.fly()}
+        """The aircraft too, where a figure draws it."""
+        aircraft = {} if OF_AIRCRAFT.isdisjoint(product.reads) else {"aircraft": self.fly()}
+        return super().values_for(product) | aircraft
 
     def accuracy(self) -> Job:
         """What the selected maps err by on the samples that each was fitted to."""

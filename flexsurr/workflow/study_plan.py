@@ -120,8 +120,8 @@ class StudyPlan(ABC):
         return self.source in product.sources
 
     def values_for(self, product: Product) -> Job:
-        """What a figure or table needs besides files."""
-        return {}
+        """What a figure or table needs besides files: which runs each sweep has, where it shows them."""
+        return {"sweeps": self.select()["sweeps"]} if "sweeps" in product.reads else {}
 
 
 class FieldPlan(StudyPlan):

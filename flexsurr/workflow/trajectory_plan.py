@@ -158,8 +158,8 @@ class TrajectoryPlan(FieldPlan):
         return super().shows(product) and product.shows(self.resolved.structure)
 
     def values_for(self, product: Product) -> Job:
-        """The structure, where a figure draws it."""
-        return self._structure() if "structure" in product.reads else {}
+        """The structure too, where a figure draws it."""
+        return super().values_for(product) | (self._structure() if "structure" in product.reads else {})
 
     def _structure(self) -> Job:
         return {"structure": self.resolved.structure.model_dump(mode="json")}

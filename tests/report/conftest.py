@@ -218,8 +218,9 @@ def metrics() -> pd.DataFrame:
                     "optimiser": optimiser,
                     "structure": "cantilever",
                     **dict.fromkeys(("options", "scaling", "learning_rate", "weight_decay", "batch_size")),
-                    **dict.fromkeys(("precision", "device", "loss", "keep", "patience")),
+                    **dict.fromkeys(("precision", "device", "loss", "keep", "patience", "give_up")),
                     "time_limit_s": None,
+                    "reason": "",
                     "seed": 0,
                     "dataset": "default",
                     "epoch_limit": 10,
@@ -236,7 +237,15 @@ def metrics() -> pd.DataFrame:
                 }
             )
     rows[0] |= {"status": "failed", "train_nmse": None, "validation_nmse": None}
+    rows[0] |= {"reason": "the loss is not finite after epoch 3"}
     return pd.DataFrame(rows)
+
+
+@pytest.fixture
+def sweeps(metrics) -> dict[str, list[str]]:
+    """Two sweeps: one of everything, one of the polynomials alone."""
+    polynomials = metrics[metrics["architecture"] == "polynomial"]
+    return {"default": list(metrics["run_id"]), "few": list(polynomials["run_id"])}
 
 
 @pytest.fixture
