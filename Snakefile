@@ -50,3 +50,4 @@ rule all:
             for name in plan.figures(study)
         ],
         rules.join.output,
+        rules.answer.output if "cost" in ALL_TABLES else [],

@@ -19,7 +19,7 @@ from flexsurr.evaluation.airliner_flights import (
     peak_errors,
 )
 from flexsurr.evaluation.airliner_models import ONE_MACH, REFERENCE, Airliner
-from flexsurr.evaluation.columns import COST_COLUMNS
+from flexsurr.evaluation.columns import COST_COLUMNS, REBUILT
 from flexsurr.evaluation.ratios import relative_percent
 from flexsurr.evaluation.timing import wall_time
 from flexsurr.flight.trim import Trim, TrimNotFound, trim
@@ -29,7 +29,6 @@ from flexsurr.simulation.trajectory import Trajectory
 
 log = logging.getLogger(__name__)
 
-REBUILT = "vlm_rebuild"
 BASELINES = (REBUILT, REFERENCE, ONE_MACH, "quadratic")
 NETWORK = "network"
 TORCH = "network_torch"

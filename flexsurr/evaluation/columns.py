@@ -9,6 +9,9 @@ FREQUENCY_COLUMNS = (
     "published_fom_rad_s",
     "published_rom_rad_s",
 )
+REBUILT = "vlm_rebuild"
+"""The model of a row whose vortex lattice was built anew at every call."""
+
 COST_COLUMNS = (
     "study",
     "variant",

@@ -14,6 +14,7 @@ from flexsurr.report.style import (
     VARIANTS,
     colour,
     family,
+    fitting_legend,
     label,
     letter,
     logarithmic,
@@ -180,10 +181,4 @@ def _legend(figure: Figure, cost: pd.DataFrame) -> None:
         if name in set(cost["implementation"])
     ]
     handles.append(Line2D([], [], color="#C9C9C9", linewidth=3.0, label="Pareto front"))
-    # as few rows as fit the page
-    for columns in range(len(handles), 0, -1):
-        legend = figure.legend(handles=handles, loc="outside upper center", ncols=columns)
-        figure.canvas.draw()
-        if legend.get_window_extent().width <= figure.bbox.width or columns == 1:
-            return
-        legend.remove()
+    fitting_legend(figure, handles, "outside upper center")

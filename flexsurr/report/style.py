@@ -1,12 +1,13 @@
 """One look for every figure: sizes for print, colours that colour-blind readers can tell apart, saving."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from functools import wraps
 from pathlib import Path
 from typing import Any, ParamSpec
 from zlib import crc32
 
 import matplotlib
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex, to_rgb
@@ -103,6 +104,11 @@ def dashes(model: str) -> Any:
     return DASHES.get(family(model), "-")
 
 
+def has_family(model: str) -> bool:
+    """Whether a model has a colour and a name of its own here."""
+    return bool(own_network(model)) or any(model == name or model.startswith(f"{name}_") for name in COLOURS)
+
+
 def family(model: str) -> str:
     """The name that says a model's colour and line style; KeyError for a model of none."""
     if own_network(model):
@@ -176,6 +182,16 @@ def logarithmic(ax: Axes, x: bool = False, y: bool = False) -> None:
     if y:
         ax.set_yscale("log")
         ax.yaxis.set_minor_locator(NullLocator())
+
+
+def fitting_legend(figure: Figure, handles: Sequence[Artist], loc: str) -> None:
+    """A legend of the whole figure, outside its axes, in as few rows as fit its width."""
+    for columns in range(len(handles), 0, -1):
+        legend = figure.legend(handles=handles, loc=loc, ncols=columns)
+        figure.canvas.draw()
+        if legend.get_window_extent().width <= figure.bbox.width or columns == 1:
+            return
+        legend.remove()
 
 
 def letter(axes: Iterable[Axes]) -> None:

@@ -1,9 +1,12 @@
 """After a change, exactly what depends on it is made again."""
 
+import json
 import shutil
 from pathlib import Path
 
+import pandas as pd
 import pytest
+import yaml
 from project import CONFIGURATION
 
 from flexsurr.config.settings import load
@@ -28,7 +31,8 @@ def products_of(*reads: str, study: str = BEAM) -> dict[str, int]:
         sum(not set(reads).isdisjoint(product.reads) for product in products)
         for products in (figures, tables)
     )
-    return {name: count for name, count in (("draw", drawn), ("tabulate", tabulated), ("join", 1)) if count}
+    counts = {"draw": drawn, "tabulate": tabulated, "join": 1, "answer": 1}
+    return {name: count for name, count in counts.items() if count}
 
 
 RUNS = ("metrics", "relatives", "history")
@@ -85,6 +89,50 @@ def test_editing_the_file_of_a_network_of_ones_own_trains_it_anew(copy_of_quick)
     with (copy_of_quick.root / "examples" / "my_models.py").open("a") as source:
         source.write("# another thought\n")
     assert copy_of_quick.scheduled() == {"train": 2, "score": 2, **SELECTED}
+
+
+def test_a_value_that_is_removed_deletes_nothing_and_one_that_comes_back_trains_nothing(copy_of_quick):
+    target = f"results/selected/{BEAM}.json"
+    before = copy_of_quick.plan.studies[BEAM].runs
+    spaces = yaml.safe_load((copy_of_quick.root / SWEEP).read_text())["spaces"]
+    copy_of_quick.change(SWEEP, "spaces", [space for space in spaces if space["architecture"] != "mlp"])
+    gone = before.keys() - copy_of_quick.plan.studies[BEAM].runs.keys()
+    assert len(gone) == 2
+    assert copy_of_quick.scheduled(target) == {"select": 1}
+    copy_of_quick.run_well(target)
+    selected = json.loads((copy_of_quick.root / target).read_text())
+    assert not any("mlp" in chosen for chosen in selected.values())
+    assert all((copy_of_quick.results / "runs" / key / "metrics.json").is_file() for key in gone)
+    copy_of_quick.change(SWEEP, "spaces", spaces)
+    assert copy_of_quick.scheduled(target) == {"select": 1}
+
+
+def test_before_anything_runs_it_says_how_many_trials_are_new(copy_of_quick):
+    trials = {name: len(study.runs) for name, study in copy_of_quick.plan.studies.items()}
+    output = copy_of_quick.run_well("--dry-run")
+    lines = [f"{name}: {count} trials, none of them new" for name, count in trials.items() if count > 1]
+    assert len(lines) >= 2
+    assert all(output.count(line) == 1 for line in lines)
+    copy_of_quick.change(SWEEP, "spaces.1.hidden", [[8], [4]])
+    assert f"{BEAM}: {trials[BEAM] + 2} trials, 2 of them new" in copy_of_quick.run_well("--dry-run")
+
+
+def test_a_sweep_of_which_no_trial_finishes_ends_with_tables_that_say_so(copy_of_quick):
+    rule = {"after_epochs": 2, "above_nmse": 1e-30}
+    space = {"architecture": "hnn", "hidden": [[6]], "activation": ["half_log"], "give_up": [rule]}
+    for sweep in (SWEEP, "config/sweeps/quick_data_free.yaml"):
+        copy_of_quick.change(sweep, "spaces", [space])
+    copy_of_quick.run_well(BEAM)
+    tables = copy_of_quick.results / "tables" / BEAM
+    sweeps = pd.read_csv(tables / "sweeps.csv")
+    assert (sweeps["finished"] == 0).all()
+    assert sweeps["outcome"].str.startswith("every trial was stopped; the first: the best valid").all()
+    training = pd.read_csv(tables / "training.csv")
+    assert (training["status"] == "stopped").all()
+    assert training["reason"].str.contains("after 2 epochs, above 1e-30").all()
+    assert "every trial was" in (tables / "sweeps.html").read_text()
+    # what they are compared with is measured all the same
+    assert set(pd.read_csv(tables / "cost.csv")["model"]) == {"rom"}
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,8 @@ import urllib.request
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+import pandas as pd
 import pytest
 from mlflow import MlflowClient
 from selenium import webdriver
@@ -23,6 +25,7 @@ from selenium.webdriver.support.ui import WebDriverWait
 from flexsurr.config.reading import read_yaml
 from flexsurr.config.structure import Structure
 from flexsurr.report.catalogue import FIGURES, TABLES
+from flexsurr.report.pages import ROWS
 from flexsurr.training.tracking import RUN_KEY, store_uri
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
@@ -91,7 +94,7 @@ def click(browser, word: str) -> None:
 def open_report(quick, browser, kind: str, study: str = "cantilever") -> None:
     """The list of a study's figures or tables in the report."""
     browser.get((quick.results / "report.html").as_uri())
-    wait_for(browser, "Results", "surrogate")
+    wait_for(browser, "Results")
     click(browser, "Results")
     wait_for(browser, "airliner", "cantilever", "wing")
     click(browser, study)
@@ -133,7 +136,7 @@ def test_the_report_shows_a_figure_and_what_to_see_in_it(quick, browser, name):
     ("study", "names"),
     [
         ("wing", ("figure_07", "figure_14", "figure_15", "architecture_errors")),
-        ("airliner", (*(f"figure_{number}" for number in range(16, 22)), "coefficient_errors")),
+        ("airliner", (*(f"figure_{number}" for number in range(16, 22)), "coefficient_errors", "trials")),
     ],
 )
 def test_the_report_lists_the_figures_of_the_other_studies(quick, browser, study, names):
@@ -157,11 +160,99 @@ def test_a_browser_draws_the_figures(quick, browser, study, name):
     assert complaints(browser) == []
 
 
-def test_the_cost_table_is_a_page(quick, browser):
-    browser.get((quick.results / "tables" / "cantilever" / "cost.html").as_uri())
-    assert len(browser.find_elements(By.CSS_SELECTOR, "tbody tr")) > 10
-    assert "dop853_fixed" in text_of(browser)
+def test_the_report_opens_with_the_answer_and_not_with_the_graph_of_rules(quick, browser):
+    browser.get((quick.results / "report.html").as_uri())
+    wait_for(browser, "Results", "measured against everything")
+    assert browser.find_elements(By.ID, "rulegraph") == []
+    (frame,) = browser.find_elements(By.ID, "answer")
+    assert frame.size["width"] > 700
+    assert frame.size["height"] > 500
+    browser.switch_to.frame(frame)
+    wait_for(browser, "When does a surrogate pay?", "times_as_fast", "cantilever:", "wing:", "airliner:")
+    drawn = (
+        "return [...document.images].every(i => i.complete && i.naturalWidth > 100) && document.images.length"
+    )
+    assert browser.execute_script(drawn) == 1
+    table = pd.read_csv(quick.results / "tables" / "answer.csv")
+    assert len(browser.find_elements(By.CSS_SELECTOR, "tbody tr")) == len(table)
+    wait_for_sorting(browser)
+    sort_by(browser, "tip_error_percent")
+    assert_sorted(browser, "tip_error_percent")
+    browser.switch_to.default_content()
+    click(browser, "Workflow")
+    WebDriverWait(browser, PATIENCE_S).until(lambda driver: driver.find_elements(By.ID, "rulegraph"))
+    assert not browser.find_element(By.ID, "answer").is_displayed()
     assert complaints(browser) == []
+
+
+def wait_for_sorting(browser) -> None:
+    """Wait until the page's table can be sorted, and look for an error that says why it cannot."""
+    WebDriverWait(browser, PATIENCE_S).until(
+        lambda driver: driver.find_elements(By.CSS_SELECTOR, "table.dataTable"),
+        f"no table that sorts: {complaints(browser)}",
+    )
+
+
+def heads(browser) -> list[str]:
+    return [head.text for head in browser.find_elements(By.CSS_SELECTOR, "thead th")]
+
+
+def sort_by(browser, column: str) -> None:
+    names = [name.replace("\n", "") for name in heads(browser)]
+    browser.find_elements(By.CSS_SELECTOR, "thead th")[names.index(column)].click()
+
+
+def column_of(browser, column: str) -> list[str]:
+    place = [name.replace("\n", "") for name in heads(browser)].index(column)
+    script = (
+        f"return [...document.querySelectorAll('tbody tr td:nth-child({place + 1})')].map(td => td.innerText)"
+    )
+    return browser.execute_script(script)
+
+
+def assert_sorted(browser, column: str, falling: bool = False) -> None:
+    """The numbers of a column rise or fall; those that are missing stand together at one end."""
+    numbers = [float(text) if text else -np.inf for text in column_of(browser, column)]
+    assert len(set(numbers)) > 2
+    assert numbers == sorted(numbers, reverse=falling)
+
+
+def test_a_table_in_the_report_sorts_by_its_numbers_and_is_searched(quick, browser):
+    open_report(quick, browser, "tables")
+    wait_for(browser, "cost")
+    look, _ = browser.find_elements(By.XPATH, "//tr[td[normalize-space(.)='cost']]//a")
+    look.click()
+    frame = WebDriverWait(browser, PATIENCE_S).until(
+        lambda driver: driver.find_element(By.TAG_NAME, "iframe")
+    )
+    browser.switch_to.frame(frame)
+    wait_for_sorting(browser)
+    table = pd.read_csv(quick.results / "tables" / "cantilever" / "cost.csv")
+    # written in scientific notation: sorted as words they would be in another order
+    shown = column_of(browser, "tip_error_percent")
+    assert len(shown) == len(table)
+    assert any("e-" in text for text in column_of(browser, "wall_s_mean") + shown)
+    for column in ("wall_s_mean", "tip_error_percent"):
+        for falling in (False, True):
+            sort_by(browser, column)
+            assert_sorted(browser, column, falling)
+    browser.find_element(By.CSS_SELECTOR, ".dt-search input").send_keys("described")
+    WebDriverWait(browser, PATIENCE_S).until(
+        lambda driver: set(column_of(driver, "implementation")) == {"described"}
+    )
+    assert len(column_of(browser, "implementation")) == (table["implementation"] == "described").sum()
+    browser.switch_to.default_content()
+    assert complaints(browser) == []
+
+
+@pytest.mark.parametrize("study", ["cantilever", "wing", "airliner"])
+def test_every_table_is_a_page_that_sorts(quick, browser, study):
+    for name in quick.plan.tables(study):
+        browser.get((quick.results / "tables" / study / f"{name}.html").as_uri())
+        wait_for_sorting(browser)
+        rows = pd.read_csv(quick.results / "tables" / study / f"{name}.csv")
+        assert len(browser.find_elements(By.CSS_SELECTOR, "tbody tr")) == min(max(len(rows), 1), ROWS)
+        assert complaints(browser) == []
 
 
 @dataclass(frozen=True)

@@ -80,6 +80,12 @@ rule tabulate:
         " --caption {input.caption:q} --output {output[0]:q} > {log:q} 2>&1"
 
 
+# The tables that any study has.
+ALL_TABLES = list(
+    dict.fromkeys(name for study in STUDIES for name in plan.tables(study))
+)
+
+
 rule join:
     input:
         [
@@ -88,12 +94,7 @@ rule join:
             for name in plan.tables(study)
         ],
     output:
-        expand(
-            f"{RESULTS}/tables/{{name}}.csv",
-            name=dict.fromkeys(
-                name for study in STUDIES for name in plan.tables(study)
-            ),
-        ),
+        expand(f"{RESULTS}/tables/{{name}}.csv", name=ALL_TABLES),
     log:
         f"{RESULTS}/logs/join.log",
     benchmark:
@@ -110,6 +111,42 @@ rule join:
         "joining the tables of all studies"
     shell:
         "python -m flexsurr join --job {params.job:q} --inputs {input:q} --folder {params.folder:q} > {log:q} 2>&1"
+
+
+# The page that the report opens with; there is none where nothing has a reference to be compared with.
+rule answer:
+    input:
+        cost=f"{RESULTS}/tables/cost.csv",
+        caption=caption_file("answer"),
+    output:
+        page=report(
+            f"{RESULTS}/answer.html",
+            caption="../report/product.rst",
+            category="answer",
+            labels={"shows": "When does a surrogate pay?"},
+        ),
+        frame=f"{RESULTS}/answer-frame.html",
+        table=f"{RESULTS}/tables/answer.csv",
+        figure=f"{RESULTS}/figures/answer.svg",
+        picture=f"{RESULTS}/figures/answer.png",
+    log:
+        f"{RESULTS}/logs/answer.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/answer.tsv"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=30,
+    params:
+        job=lambda w: write("answer", {}),
+        code=code("answer"),
+        caption=lambda w: caption("answer"),
+    message:
+        "answering when a surrogate pays"
+    shell:
+        "python -m flexsurr answer --job {params.job:q} --cost {input.cost:q} --caption {input.caption:q}"
+        " --table {output.table:q} --figure {output.figure:q} --output {output.page:q}"
+        " --frame {output.frame:q} > {log:q} 2>&1"
 
 
 if taken := sorted({*STUDIES} & {"all", *(made.name for made in workflow.rules)}):

@@ -1,0 +1,144 @@
+"""When a surrogate pays, how much, and at what loss: the question of every study, answered by its costs."""
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from flexsurr.evaluation.columns import REBUILT
+from flexsurr.report.style import VARIANTS, has_family, label
+
+ALLOWED_PERCENT = 1.0
+"""The loss up to which a surrogate may stand for its reference: the worst error, in percent of the peak."""
+
+ANSWER_COLUMNS = (
+    "study",
+    "response",
+    "variant",
+    "model",
+    "pays",
+    "times_as_fast",
+    "tip_error_percent",
+    "wall_s",
+    "integrator",
+    "reference",
+    "reference_integrator",
+    "reference_wall_s",
+    "times_as_fast_as_numpy",
+    "times_as_fast_as_described",
+)
+
+CASE = ["study", "response", "variant"]
+
+READ = (*CASE, "model", "implementation", "integrator", "wall_s_mean", "tip_error_percent", "diverged")
+
+
+def answer(cost: pd.DataFrame) -> pd.DataFrame:
+    """answer.csv: each surrogate beside the fastest compiled reference, fastest first in each case.
+
+    `cost`: the columns of cost.csv. A case is a study, a response and a variant. Of each model that setup
+    stands which is fastest among those within ALLOWED_PERCENT or, where there is none, errs least; the
+    reference by the same rule. pays: yes where that is within and faster. Models of which every simulation
+    diverged are left out, and cases without a compiled reference. Raises KeyError naming a missing column.
+    """
+    missing = [name for name in READ if name not in cost.columns]
+    if missing:
+        raise KeyError(f"columns missing: {', '.join(missing)}")
+    rows: list[dict[str, Any]] = []
+    for names, of_case in cost[cost["wall_s_mean"].notna()].groupby(CASE, sort=False):
+        references = of_case[of_case["model"].map(is_a_reference)]
+        compiled = references["implementation"] == "compiled"
+        if not compiled.any():
+            continue
+        # what all others are compared with has no error of its own
+        reference = _setup(references[compiled].fillna({"tip_error_percent": 0.0}))
+        baselines = {name: _wall_s(references, name) for name in ("numpy", "described")}
+        surrogates = of_case[
+            ~of_case["model"].map(is_a_reference) & (of_case["implementation"] == "compiled")
+        ]
+        for model, setups in surrogates.groupby("model", sort=False):
+            setup = _setup(setups)
+            wall_s = setup["wall_s_mean"]
+            ratio = reference["wall_s_mean"] / wall_s
+            row = dict(zip(CASE, names, strict=True)) | {
+                "model": model,
+                "pays": "yes" if _is_allowed(setup) and ratio > 1.0 else "no",
+                "times_as_fast": ratio,
+                "tip_error_percent": setup["tip_error_percent"],
+                "wall_s": wall_s,
+                "integrator": setup["integrator"],
+                "reference": reference["model"],
+                "reference_integrator": reference["integrator"],
+                "reference_wall_s": reference["wall_s_mean"],
+                **{f"times_as_fast_as_{name}": base / wall_s for name, base in baselines.items()},
+            }
+            rows.append(row)
+    frame = pd.DataFrame(rows, columns=list(ANSWER_COLUMNS))
+    # cases as they come, then what pays, then the fastest
+    places = pd.DataFrame({name: pd.factorize(frame[name])[0] for name in CASE})
+    places = places.assign(pays=frame["pays"] == "no", slow=-frame["times_as_fast"])
+    return frame.loc[places.sort_values([*CASE, "pays", "slow"]).index].reset_index(drop=True)
+
+
+def _wall_s(references: pd.DataFrame, baseline: str) -> float:
+    """The wall time of a baseline; for the lattice, described is the one that is rebuilt at every call."""
+    is_it = (references["implementation"] == baseline) | (
+        (references["model"] == REBUILT) & (baseline == "described")
+    )
+    return float(references[is_it]["wall_s_mean"].min())
+
+
+def is_a_reference(model: str) -> bool:
+    """Whether it is what surrogates stand for: the reduced model, or a form of the vortex lattice."""
+    return model in ("rom", "fom") or model.startswith("vlm_")
+
+
+def in_words(table: pd.DataFrame) -> list[str]:
+    """What to read in the table of `answer`, a paragraph for each study."""
+    said = []
+    for study, rows in table.groupby("study", sort=False):
+        cases = rows.groupby(["response", "variant"])["pays"].agg(lambda pays: (pays == "yes").any())
+        within = rows[rows["tip_error_percent"] <= ALLOWED_PERCENT]
+        if within.empty:
+            said.append(f"{study}: no surrogate errs by less than {ALLOWED_PERCENT:g} % of the peak.")
+            continue
+        best = within.loc[within["times_as_fast"].idxmax()]
+        pays = (
+            f"a surrogate pays in {cases.sum()} of {len(cases)} cases" if cases.any() else "no surrogate pays"
+        )
+        said.append(f"{study}: {pays}. {_best_in_words(best)}")
+    return said
+
+
+def _best_in_words(best: "pd.Series[Any]") -> str:
+    variant = VARIANTS.get(best["variant"], best["variant"].replace("_", " "))
+    described = best["times_as_fast_as_described"]
+    also = "" if pd.isna(described) else f" ({times(described)} times as fast as the described baseline)"
+    case, reference = f"{best['response']}, {variant}", name_of(best["reference"])
+    return (
+        f"The fastest within {ALLOWED_PERCENT:g} % is {name_of(best['model'])} ({case}): "
+        f"{times(best['times_as_fast'])} times as fast as the compiled reference, {reference}{also}, "
+        f"at a loss of {best['tip_error_percent']:.1g} %."
+    )
+
+
+def name_of(model: str) -> str:
+    """A model's name in figures; of a form of the aerodynamics that of its rows."""
+    return label(model) if has_family(model) else model.replace("_", " ")
+
+
+def times(ratio: float) -> str:
+    """How many times as fast, in two digits or more."""
+    return f"{ratio:.2g}" if ratio < 10.0 else f"{ratio:,.0f}"
+
+
+def _setup(setups: pd.DataFrame) -> "pd.Series[Any]":
+    """The fastest that is allowed or, where none is, the one that errs least."""
+    allowed = setups[[_is_allowed(setup) for _, setup in setups.iterrows()]]
+    if len(allowed):
+        return allowed.loc[allowed["wall_s_mean"].idxmin()]
+    return setups.loc[setups["tip_error_percent"].fillna(np.inf).idxmin()]
+
+
+def _is_allowed(setup: "pd.Series[Any]") -> bool:
+    return bool(setup["tip_error_percent"] <= ALLOWED_PERCENT and not setup["diverged"])
