@@ -15,6 +15,7 @@ from flexsurr.evaluation.accuracy import tip_error
 from flexsurr.evaluation.cases import (
     Reference,
     Response,
+    energy_above_rest,
     evaluation_cases,
     reference_solutions,
     sample_times,
@@ -160,7 +161,7 @@ def _measure(
         "tip_error_2s_percent": error.short_percent,
         "phase_lag_s": error.phase_lag_s,
         "energy_drift_percent": energy_error_percent(
-            basis.structure, reference, exact.energy(trajectory.x), free_from_s
+            basis.structure, reference, energy_above_rest(basis, variant, trajectory.x), free_from_s
         ),
         "own_energy_drift_percent": (
             float("nan")

@@ -6,13 +6,14 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from flexsurr.beam import ModalBasis, reduced_order
+from flexsurr.beam import ModalBasis
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Integrator, Study, Variant
 from flexsurr.evaluation.cases import (
     DRAWN_EVERY_S,
     Reference,
     Response,
+    energy_above_rest,
     evaluation_cases,
     reference_solution,
     sample_times,
@@ -80,9 +81,9 @@ def energy_table(
 
     Panel "models": the reference and each surrogate with the study's energy_integrator. Panel "integrators",
     of the free response: the exact field with each integrator of the study and SciPy's at their defaults. The
-    energy is the reference's exact Hamiltonian along the trajectory [J], whatever the model: the only one
-    that is the same quantity for all. drift_percent is relative to the start in a free response where nothing
-    dissipates, `deviation_percent` elsewhere. A trajectory that ends early ends its rows.
+    energy is the reference's exact one along the trajectory [J], above that of rest, whatever the model: the
+    only one that is the same quantity for all. drift_percent is relative to the start in a free response
+    where nothing dissipates, `deviation_percent` elsewhere. A trajectory that ends early ends its rows.
     """
     settings = study.evaluation
     compiled = [c for c in contenders(basis, variant, surrogates) if c.steppable]
@@ -112,7 +113,7 @@ def _energy(
 ) -> pd.DataFrame:
     case = reference.case
     trajectory = simulate(contender.under(basis, case), reference.t, case.x0, integrator)
-    energy = reduced_order(basis, variant, "numpy").energy(trajectory.x)
+    energy = energy_above_rest(basis, variant, trajectory.x)
     conserves = case.load is None and not basis.structure.dissipates
     return pd.DataFrame(
         {

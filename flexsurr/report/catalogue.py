@@ -36,6 +36,16 @@ def wing(structure: Structure) -> bool:
     return structure.name == "wing"
 
 
+def bends(structure: Structure) -> bool:
+    """Whether it has a joint that bends."""
+    return not {"in_plane", "out_of_plane"}.isdisjoint(structure.joints)
+
+
+def lifts(structure: Structure) -> bool:
+    """Whether its tip can move along z: the static loads, and the two models' comparison, are along z."""
+    return any(abs(axis[2]) > 1e-9 for axis in structure.felt_axes)
+
+
 def conservative(structure: Structure) -> bool:
     """Whether nothing of the structure is damped."""
     return not structure.dissipates
@@ -70,7 +80,7 @@ class Product:
 
 
 FIGURES: dict[str, Product] = {
-    "figure_03": Product("Discretisation", ("structure",)),
+    "figure_03": Product("Discretisation", ("structure",), bends),
     "figure_04": Product("Frames and position vectors", ("structure",)),
     "figure_05": Product("Multilayer perceptron"),
     "figure_06": Product("Hamiltonian neural network", shows=conservative),
@@ -83,8 +93,8 @@ FIGURES: dict[str, Product] = {
     "figure_13": Product("Total energy", ("energy-*",), cantilever),
     "figure_14": Product("Free response", ("response-*-free",), wing),
     "figure_15": Product("Response to lift and drag", ("response-*-sustained",), wing),
-    "static_deflection": Product("Static deflection, and its errors", ("statics",)),
-    "reduced_against_full": Product("Reduced against full order", ("validation",)),
+    "static_deflection": Product("Static deflection, and its errors", ("statics",), lifts),
+    "reduced_against_full": Product("Reduced against full order", ("validation",), lifts),
     "free_response_of_every_model": Product("Free response of every model", ("structure", "response-*-free")),
     "forced_response_of_every_model": Product(
         "Forced response of every model", ("structure", "response-*-forced")
@@ -115,7 +125,7 @@ FIGURES: dict[str, Product] = {
 }
 
 TABLES: dict[str, Product] = {
-    "static_tip": Product("Tip under static loads", ("statics",)),
+    "static_tip": Product("Tip under static loads", ("statics",), lifts),
     "natural_frequencies": Product("Natural frequencies", ("frequencies",)),
     "sweeps": Product("Sweeps, and what came of them", ("sweeps", "metrics"), sources=EVERY_SOURCE),
     "training": Product("Training runs", ("metrics",), sources=EVERY_SOURCE),

@@ -1,5 +1,6 @@
 """Responses of every model of a study at once, and how far each has strayed."""
 
+import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -11,17 +12,23 @@ from flexsurr.report.style import BLACK, PAGE_IN, VARIANTS, letter, logarithmic,
 WINDOW_S = 0.6
 """Length of a window in which single oscillations of an undamped structure can be seen."""
 
+TIP = {"tip_z_m": "tip z [m]", "tip_y_m": "tip y [m]", "tip_x_m": "tip x [m]"}
+"""The tip's coordinates, and what their axes are called."""
+
+STILL_M = 1e-9
+"""Less is no motion."""
+
 SMALLEST_PERCENT = 1e-9
 """What rounding leaves is no error to compare."""
 
 
 @styled
 def free_response_of_every_model(structure: Structure, response: pd.DataFrame) -> Figure:
-    """Tip height of every model in one free response, and the largest tip error so far.
+    """The tip of every model in one free response, as it moves furthest, and the largest tip error so far.
 
-    `response`: columns variant, model ("reference" or a surrogate's), t_s, tip_z_m, tip_error_percent,
-    load_end_s; one simulation a variant. One column of panels for each variant. A structure that comes to
-    rest is shown whole; of any other the first and the last oscillations.
+    `response`: columns variant, model ("reference" or a surrogate's), t_s, tip_x_m, tip_y_m, tip_z_m,
+    tip_twist_rad, tip_error_percent, load_end_s; one simulation a variant. One column of panels for each
+    variant. A structure that comes to rest is shown whole; of any other the first and the last oscillations.
     """
     return _histories(structure, response)
 
@@ -34,6 +41,7 @@ def forced_response_of_every_model(structure: Structure, response: pd.DataFrame)
 
 def _histories(structure: Structure, response: pd.DataFrame) -> Figure:
     variants = variants_in(response)
+    response, motion = _moving(response)
     heights = 1 if structure.dissipates else 2
     figure = new_figure(PAGE_IN, 2.4 + 1.4 * heights + 0.03 * response["model"].nunique())
     grid = figure.subplots(heights + 1, len(variants), sharey="row", squeeze=False)
@@ -42,7 +50,7 @@ def _histories(structure: Structure, response: pd.DataFrame) -> Figure:
         windows = _windows(structure, shown)
         for ax, (start_s, end_s, title) in zip(column, windows, strict=False):
             for model, part in each(shown[shown["t_s"].between(start_s, end_s)]):
-                curve(ax, part["t_s"], part["tip_z_m"], model)
+                curve(ax, part["t_s"], part["moving"], model)
             ax.set(xlim=(start_s, end_s))
             ax.set_title(f"{title}, {VARIANTS[variant]}" if ax is column[0] else title, loc="left")
         _errors(column[-1], shown)
@@ -51,19 +59,33 @@ def _histories(structure: Structure, response: pd.DataFrame) -> Figure:
             shade(ax, float(shown["load_end_s"].max()))
             ax.set(xlim=limits, xlabel="time [s]")
     for row in grid[:-1]:
-        row[0].set_ylabel("tip z [m]")
-        follow_reference(row[0], response.loc[response["model"] == "reference", "tip_z_m"])
+        row[0].set_ylabel(motion)
+        follow_reference(row[0], response.loc[response["model"] == "reference", "moving"])
     grid[-1, 0].set_ylabel("tip error [% of the peak]")
     legend(figure, grid[0], shaded=bool((response["load_end_s"] > 0.0).any()))
     letter(grid.ravel())
     return figure
 
 
+def _moving(response: pd.DataFrame) -> tuple[pd.DataFrame, str]:
+    """`response` with a column `moving`, the coordinate of the tip that moves furthest, and its label.
+
+    The twist where the tip stays where it is: of a rod that only twists.
+    """
+    ways = response.loc[response["model"] == "reference", list(TIP)].agg(
+        lambda values: values.max() - values.min()
+    )
+    if ways.max() > STILL_M:
+        axis = str(ways.idxmax())
+        return response.assign(moving=response[axis]), TIP[axis]
+    return response.assign(moving=np.rad2deg(response["tip_twist_rad"])), "tip twist [deg]"
+
+
 def _windows(structure: Structure, shown: pd.DataFrame) -> list[tuple[float, float, str]]:
-    """Start and end [s] of the panels of the tip height, and what they show."""
+    """Start and end [s] of the panels of the tip, and what they show."""
     end_s, load_end_s = float(shown["t_s"].max()), float(shown["load_end_s"].max())
     if structure.dissipates:
-        return [(0.0, end_s, "tip height")]
+        return [(0.0, end_s, "tip")]
     first_s = max(0.0, min(load_end_s - 0.55 * WINDOW_S, end_s - WINDOW_S))
     first = "end of the load" if load_end_s > 0.0 else "first oscillations"
     return [

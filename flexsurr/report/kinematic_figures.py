@@ -19,6 +19,9 @@ DRAWN_ELEMENTS = 5
 FRAMED_ELEMENT = 4
 """The element whose frames are drawn."""
 
+TURNED_DEG = {"in_plane": 2.0, "out_of_plane": 12.0, "torsion": -5.0}
+"""How far each joint is turned that the structure has, in the figure of frames."""
+
 POSITION = "#9B4F86"
 
 
@@ -97,11 +100,13 @@ def figure_03(structure: Structure) -> Figure:
 
 @styled
 def figure_04(structure: Structure) -> Figure:
-    """The frames of eq. 1: G at the clamp, U_i and D_i of one element, and the position of its point P."""
-    beam = _few_elements(structure, ("in_plane", "out_of_plane", "torsion")).model_copy(
-        update={"length_m": 1.0}
-    )
-    q = np.deg2rad(np.repeat([2.0, 12.0, -5.0], DRAWN_ELEMENTS))
+    """The frames of eq. 1: G at the clamp, U_i and D_i of one element, and the position of its point P.
+
+    Joints of the kinds that the structure has are turned: one without torsion is not twisted.
+    """
+    joints = tuple(joint for joint in structure.ordered_joints if joint in TURNED_DEG)
+    beam = _few_elements(structure, joints or ("out_of_plane",)).model_copy(update={"length_m": 1.0})
+    q = np.deg2rad(np.repeat([TURNED_DEG[joint] if joints else 0.0 for joint in beam.joints], DRAWN_ELEMENTS))
     straight, deformed = node_positions(beam, 0.0 * q), node_positions(beam, q)
     frames = element_frames(beam, q)
     figure, ax = canvas(PAGE_IN * 0.78, 3.3, 1.42 / PAGE_IN / 0.78)

@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flexsurr.evaluation.cases import Case, Reference
+from flexsurr.beam import reduce
+from flexsurr.evaluation.cases import Case, Reference, energy_above_rest, rest_state
 from flexsurr.evaluation.energy import (
     ENERGY_COLUMNS,
     drift_percent,
@@ -46,6 +47,20 @@ def test_where_something_dissipates_the_distance_from_the_reference_counts(struc
     assert energy_error_percent(damped, reference, falling[:4] + 0.8, 0.0) == pytest.approx(10.0)
     assert energy_error_percent(structure, reference, np.full(11, 8.0), 0.0) == 0.0
     assert energy_error_percent(structure, reference, falling, 0.0) == pytest.approx(63.2, abs=0.1)
+
+
+@pytest.mark.parametrize("gravity_m_s2", [0.0, 9.81])
+@pytest.mark.parametrize("variant", ["hamiltonian", "as_printed"])
+def test_energy_is_above_that_of_rest_which_under_gravity_is_not_the_undeformed_shapes(
+    structure, study, variant, gravity_m_s2
+):
+    basis = reduce(structure.model_copy(update={"gravity_m_s2": gravity_m_s2}), study.reduction)
+    at_rest = rest_state(basis)
+    near = at_rest + np.array([[1e-3, 0.0], [-1e-3, 0.0], [0.0, 1e-3], [0.0, -1e-3]])
+    assert energy_above_rest(basis, variant, at_rest[None]) == pytest.approx([0.0], abs=1e-12)
+    assert energy_above_rest(basis, variant, near).min() > 0.0
+    undeformed = energy_above_rest(basis, variant, np.zeros((1, 2)))
+    assert (undeformed[0] > 1e-6) == (gravity_m_s2 > 0.0)
 
 
 @pytest.fixture(scope="module")

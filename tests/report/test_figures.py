@@ -3,6 +3,7 @@
 import re
 
 import matplotlib
+import numpy as np
 import pandas as pd
 import pytest
 from matplotlib.figure import Figure
@@ -139,6 +140,57 @@ def test_what_only_damped_structures_have_is_drawn_of_them_alone(structure):
     assert made["static_deflection"] == made["free_response_of_every_model"] == [True, True, True]
     assert made["energy_drift"] == [True, False, True]
     assert made["energy_decay"] == [False, True, False]
+
+
+def test_what_only_moves_along_z_is_drawn_of_structures_whose_tip_does(structure):
+    def shown(**changes):
+        beam = structure.model_copy(update=changes)
+        of_z = ("figure_03", "static_deflection", "reduced_against_full")
+        return [name for name in of_z if FIGURES[name].shows(beam)]
+
+    assert shown() == ["figure_03", "static_deflection", "reduced_against_full"]
+    assert shown(joints=("torsion",)) == shown(joints=("torsion", "axial")) == []
+    assert shown(joints=("in_plane",)) == ["figure_03"]
+    assert shown(joints=("in_plane",), clamp_phi_deg=90.0) == shown()
+
+
+@pytest.mark.parametrize(
+    ("joints", "scales", "label"),
+    [
+        (("out_of_plane",), {}, "tip z [m]"),
+        (("in_plane",), {"tip_z_m": 0.0, "tip_y_m": 40.0}, "tip y [m]"),
+        (("axial",), {"tip_z_m": 0.0, "tip_y_m": 0.0}, "tip x [m]"),
+        (("torsion",), {"tip_z_m": 0.0, "tip_y_m": 0.0, "tip_x_m": 0.0}, "tip twist [deg]"),
+    ],
+)
+@pytest.mark.parametrize("name", ["free_response_of_every_model", "forced_response_of_every_model"])
+def test_the_response_is_drawn_along_what_moves(name, joints, scales, label, structure, free):
+    for column, scale in scales.items():
+        free[column] *= scale
+    figure = DRAW[name](structure.model_copy(update={"joints": joints}), free)
+    shown = [ax for ax in figure.axes if ax.get_subplotspec().is_first_row()]
+    assert figure.axes[0].get_ylabel() == label
+    assert all(np.ptp(line.get_ydata()) > 0.01 for ax in shown for line in ax.lines[:2])
+
+
+@pytest.mark.parametrize("joints", [("out_of_plane",), ("torsion",), ("axial",), ("in_plane", "torsion")])
+def test_frames_are_turned_by_the_joints_that_there_are(joints, structure):
+    beam = structure.model_copy(update={"joints": joints, **STIFF})
+    figure = DRAW["figure_04"](beam)
+    others = DRAW["figure_04"](beam.model_copy(update={"joints": ("out_of_plane", "torsion")}))
+    assert outlines(figure) != outlines(others)
+
+
+STIFF = {
+    "bending_stiffness_in_plane_N_m2": 50.0,
+    "torsional_stiffness_N_m2": 50.0,
+    "axial_stiffness_N": 50.0,
+    "torsional_inertia_per_length_kg_m": 0.1,
+}
+
+
+def outlines(figure):
+    return [patch.get_xy().round(6).tolist() for patch in figure.axes[0].patches if hasattr(patch, "get_xy")]
 
 
 def test_numbers_are_those_of_the_papers_structures_alone(structure):
