@@ -11,6 +11,9 @@ from flexsurr.report.style import VARIANTS, has_family, label
 ALLOWED_PERCENT = 1.0
 """The loss up to which a surrogate may stand for its reference: the worst error, in percent of the peak."""
 
+AS_GOOD = 1.1
+"""Up to this many times the least error a setup counts as one that errs least."""
+
 ANSWER_COLUMNS = (
     "study",
     "response",
@@ -37,7 +40,7 @@ def answer(cost: pd.DataFrame) -> pd.DataFrame:
     """answer.csv: each surrogate beside the fastest compiled reference, fastest first in each case.
 
     `cost`: the columns of cost.csv. A case is a study, a response and a variant. Of each model that setup
-    stands which is fastest among those within ALLOWED_PERCENT or, where there is none, errs least; the
+    stands which is fastest among those within ALLOWED_PERCENT or, where there is none, that err least; the
     reference by the same rule. pays: yes where that is within and faster. Models of which every simulation
     diverged are left out, and cases without a compiled reference. Raises KeyError naming a missing column.
     """
@@ -113,12 +116,12 @@ def in_words(table: pd.DataFrame) -> list[str]:
 def _best_in_words(best: "pd.Series[Any]") -> str:
     variant = VARIANTS.get(best["variant"], best["variant"].replace("_", " "))
     described = best["times_as_fast_as_described"]
-    also = "" if pd.isna(described) else f" ({times(described)} times as fast as the described baseline)"
-    case, reference = f"{best['response']}, {variant}", name_of(best["reference"])
+    also = "" if pd.isna(described) else f" and {times(described)} times as fast as the described baseline"
+    model, ratio = name_of(best["model"]), times(best["times_as_fast"])
     return (
-        f"The fastest within {ALLOWED_PERCENT:g} % is {name_of(best['model'])} ({case}): "
-        f"{times(best['times_as_fast'])} times as fast as the compiled reference, {reference}{also}, "
-        f"at a loss of {best['tip_error_percent']:.1g} %."
+        f"The fastest within {ALLOWED_PERCENT:g} %, {model}, is {ratio} times as fast as the compiled "
+        f"reference, {name_of(best['reference'])},{also} at a loss of "
+        f"{best['tip_error_percent']:.1g} % ({best['response']}, {variant})."
     )
 
 
@@ -133,11 +136,13 @@ def times(ratio: float) -> str:
 
 
 def _setup(setups: pd.DataFrame) -> "pd.Series[Any]":
-    """The fastest that is allowed or, where none is, the one that errs least."""
+    """The fastest that is allowed or, where none is, of those that err least."""
     allowed = setups[[_is_allowed(setup) for _, setup in setups.iterrows()]]
     if len(allowed):
         return allowed.loc[allowed["wall_s_mean"].idxmin()]
-    return setups.loc[setups["tip_error_percent"].fillna(np.inf).idxmin()]
+    errors = setups["tip_error_percent"].fillna(np.inf)
+    as_good = setups[errors <= AS_GOOD * errors.min()]
+    return as_good.loc[as_good["wall_s_mean"].idxmin()]
 
 
 def _is_allowed(setup: "pd.Series[Any]") -> bool:

@@ -17,8 +17,10 @@ from flexsurr.report.style import (
     PAGE_IN,
     VARIANTS,
     colour,
+    family,
     fitting_legend,
     has_family,
+    label,
     letter,
     logarithmic,
     new_figure,
@@ -94,13 +96,13 @@ def _panel(ax: Axes, rows: pd.DataFrame, shades: Mapping[str, str]) -> None:
             markersize=4.5,
             zorder=3,
         )
-    named = [_best(of_response) for _, of_response in shown.groupby("response", sort=False)]
-    best = [row for row in named if row is not None]
+    fastest = [_best(of_response) for _, of_response in shown.groupby("response", sort=False)]
+    best = [row for row in fastest if row is not None]
     place_labels(
         ax,
         [(row["times_as_fast"], max(row["tip_error_percent"], LEAST_PERCENT)) for row in best],
         [f"{name_of(row['model'])}, {row['response']}: {times(row['times_as_fast'])}×" for row in best],
-        [shades[row["model"]] for row in best],
+        [colour(family(row["model"])) if has_family(row["model"]) else shades[row["model"]] for row in best],
         obstacles=list(zip(shown["times_as_fast"], heights, strict=True)),
     )
 
@@ -117,9 +119,15 @@ def _shades(models: Iterable[str]) -> dict[str, str]:
 
 
 def _handles(table: pd.DataFrame) -> list[Line2D]:
+    # one entry a colour: those of further sweeps are paler than the model's own
+    named: dict[str, str] = {}
+    for model, shade in _shades(table["model"]).items():
+        is_of_another = has_family(model) and model != family(model)
+        named.setdefault(
+            shade, f"{label(family(model))}, further sweeps" if is_of_another else name_of(model)
+        )
     handles = [
-        Line2D([], [], color=shade, marker="o", linestyle="", label=name_of(model))
-        for model, shade in _shades(table["model"]).items()
+        Line2D([], [], color=shade, marker="o", linestyle="", label=text) for shade, text in named.items()
     ]
     handles += [
         Line2D([], [], color="#555555", marker=MARKERS.get(response, "^"), linestyle="", label=response)
