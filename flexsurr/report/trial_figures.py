@@ -205,7 +205,9 @@ def _scale(name: str, values: Any) -> _Axis:
 
 
 def _different(numbers: Sequence[float]) -> list[str]:
-    """Numbers in as few digits as tell them apart, three or more."""
+    """Numbers in as few digits as tell them apart, three or more; whole ones whole."""
+    if all(number == int(number) and abs(number) < 1e6 for number in numbers):
+        return [f"{number:.0f}" for number in numbers]
     for digits in range(3, 17):
         texts = [f"{number:.{digits}g}".replace("e-0", "e-").replace("e+0", "e+") for number in numbers]
         if len(set(texts)) == len(texts):
