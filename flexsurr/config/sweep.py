@@ -66,10 +66,14 @@ class Range(Record):
         return number
 
 
-class WidthRange(Range):
-    """One hidden layer, its number of neurons from a range."""
+class WholeRange(Range):
+    """The same of a setting that counts something."""
 
     whole = True
+
+
+class WidthRange(WholeRange):
+    """One hidden layer, its number of neurons from a range."""
 
     def _value(self, number: float) -> Any:
         return (number,)
@@ -172,14 +176,14 @@ def _choice(key: str, value: Any) -> Any:
     plain = value
     while get_origin(plain) is Annotated:
         plain = get_args(plain)[0]
+    base: type[Range]
     if key == "hidden":
-        form = create_model("WidthRange", __base__=WidthRange, low=(Count, ...), high=(Count, ...))
+        end, base = Count, WidthRange
     elif plain in (int, float):
-        form = create_model("Range", __base__=Range, low=(value, ...), high=(value, ...))
-        form.whole = plain is int
+        end, base = value, WholeRange if plain is int else Range
     else:
         return _some(value)
-    return _either(_some(value), form)
+    return _either(_some(value), create_model(base.__name__, __base__=base, low=(end, ...), high=(end, ...)))
 
 
 def _either(values: Any, form: type[Range]) -> Any:

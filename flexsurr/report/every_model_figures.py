@@ -72,9 +72,8 @@ def _moving(response: pd.DataFrame) -> tuple[pd.DataFrame, str]:
 
     The twist where the tip stays where it is: of a rod that only twists.
     """
-    ways = response.loc[response["model"] == "reference", list(TIP)].agg(
-        lambda values: values.max() - values.min()
-    )
+    tip = response.loc[response["model"] == "reference", list(TIP)]
+    ways = tip.max() - tip.min()
     if ways.max() > STILL_M:
         axis = str(ways.idxmax())
         return response.assign(moving=response[axis]), TIP[axis]

@@ -59,7 +59,9 @@ def sweeps(runs: Mapping[str, Sequence[str]], metrics: pd.DataFrame) -> pd.DataF
                     "validation_nmse_best": None if best is None else best["validation_nmse"],
                     "long_response_error_percent_best": None if best is None else best[error],
                     "best_run_id": None if best is None else best["run_id"],
-                    "outcome": _without_one(trials) if best is None else in_words(settings.loc[best.name]),
+                    "outcome": _without_one(trials)
+                    if best is None
+                    else in_words(settings.loc[finished.index[0]]),
                 }
             )
     frame = pd.DataFrame(rows, columns=list(COLUMNS))

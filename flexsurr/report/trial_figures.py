@@ -87,7 +87,7 @@ def _panel(ax: Axes, settings: pd.DataFrame, metrics: pd.DataFrame) -> None:
     finished = (metrics["status"] == "finished").to_numpy()
     errors = metrics["validation_nmse"].astype(float).where(finished).clip(lower=1e-300).to_numpy()
     order = np.argsort(np.argsort(np.where(finished, errors, np.inf), kind="stable"))
-    lines = [_axis(name, settings[name], order) for name in settings]
+    lines = [_axis(name, settings[name], order) for name in map(str, settings)]
     known = errors[finished]
     last = _scale(ERROR, errors) if known.size else _Axis(ERROR, errors, {})
     lines.append(last)
@@ -187,17 +187,16 @@ def _scale(name: str, values: Any) -> _Axis:
     if is_log:
         first, last = np.log10(low), np.log10(high)
         ticks = _decades(first, last)
-        of = np.log10
     else:
         first, last = low, high
         ticks = [tick for tick in MaxNLocator(5).tick_values(low, high) if low <= tick <= high]
-        of = np.asarray
     if last == first:
         first, last = first - 0.5, last + 0.5
         ticks = [low]
 
     def height(value: Any) -> Any:
-        return floor + (1.0 - floor) * (of(value) - first) / (last - first)
+        at = np.log10(value) if is_log else np.asarray(value)
+        return floor + (1.0 - floor) * (at - first) / (last - first)
 
     heights = np.where(np.isnan(values), 0.0, height(np.where(np.isnan(values), low, values)))
     written = dict(zip((float(height(tick)) for tick in ticks), _different(ticks), strict=True))

@@ -1,6 +1,7 @@
 """By which settings the trials of a study differ: what a person reads of a sweep."""
 
 import re
+from typing import Any
 
 import pandas as pd
 
@@ -44,7 +45,7 @@ def settings_that_differ(metrics: pd.DataFrame) -> pd.DataFrame:
     network = [name for name in OF_A_NETWORK if frame[name].nunique(dropna=False) <= FEW]
     follows = {
         name: follow_from(frame, ["architecture", *(network if name in HOW_LONG else [])], name)
-        for name in frame
+        for name in map(str, frame)
     }
     return frame[["architecture", *(name for name, is_told in follows.items() if not is_told)]]
 
@@ -79,7 +80,7 @@ def _keywords(metrics: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(rows, index=metrics.index).add_prefix("option ")
 
 
-def _plain(values: "pd.Series[object]") -> "pd.Series[object]":
+def _plain(values: "pd.Series[Any]") -> "pd.Series[Any]":
     """Numbers, where all are; words otherwise, nothing for those that are empty."""
     given = values.map(lambda value: None if value == "" else value)
     numbers = pd.to_numeric(given, errors="coerce")

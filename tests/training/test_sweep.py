@@ -6,7 +6,7 @@ import re
 import numpy as np
 import pytest
 
-from flexsurr.config.sweep import FieldSweep, MapSweep, Range
+from flexsurr.config.sweep import FieldSweep, MapSweep, WholeRange
 from flexsurr.config.trial import (
     FIELDS,
     MAPS,
@@ -104,10 +104,6 @@ def test_a_range_of_no_more_whole_numbers_than_draws_gives_all_of_them():
         (3,),
         (4,),
     ]
-
-
-class WholeRange(Range):
-    whole = True
 
 
 @pytest.mark.parametrize(("scale", "room"), [("linear", [1.0] * 4), ("log", np.diff(np.log(range(1, 6))))])
