@@ -64,7 +64,8 @@ PAGES = (
     Page(
         "config/sweeps/*.yaml",
         "A space joins the keys of an architecture with those of an optimiser, each with a list of values: "
-        "`hidden: [[16], [32]]`, `activation: [half_log]`. Every combination is a trial.",
+        "`hidden: [[16], [32]]`, `activation: [half_log]`. Every combination is a trial; see "
+        "[sweeps](sweeps.md).",
         (Sweep, Range, *FIELDS, *MAPS, *OPTIMISERS),
     ),
     Page("config/aircraft/*.yaml", "", (Aircraft,)),
