@@ -23,7 +23,7 @@ from flexsurr.config.schema import Record
 from flexsurr.config.settings import Settings
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Study
-from flexsurr.config.sweep import Range, Sweep
+from flexsurr.config.sweep import OptionRange, Range, Sweep
 from flexsurr.config.trial import FIELDS, MAPS, OPTIMISERS, Architecture
 
 INTRODUCTION = """\
@@ -66,7 +66,7 @@ PAGES = (
         "A space joins the keys of an architecture with those of an optimiser, each with a list of values: "
         "`hidden: [[16], [32]]`, `activation: [half_log]`. Every combination is a trial; see "
         "[sweeps](sweeps.md).",
-        (Sweep, Range, *FIELDS, *MAPS, *OPTIMISERS),
+        (Sweep, Range, OptionRange, *FIELDS, *MAPS, *OPTIMISERS),
     ),
     Page("config/aircraft/*.yaml", "", (Aircraft,)),
     Page(

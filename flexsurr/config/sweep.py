@@ -80,7 +80,7 @@ class WidthRange(WholeRange):
 
 
 class OptionRange(Range):
-    """A range of a keyword of the user's own class, of which nobody knows whether it counts something."""
+    """A range of one of the `options` of a class of yours: nobody knows whether it counts something."""
 
     integer: bool = False
     """Whether only whole numbers are drawn."""

@@ -60,7 +60,8 @@ def test_every_record_of_a_configuration_is_there():
 
     written = {each for each in below(Record) if each.__module__.startswith("flexsurr.config.")}
     bases = {base for each in (*RECORDS, *FIELDS, *MAPS, *OPTIMISERS) for base in each.__mro__}
-    made = {each for each in written if each.__name__ in {"FieldSpace", "MapSpace", "FieldSweep", "MapSweep"}}
+    of_sweeps = {"FieldSpace", "MapSpace", "FieldSweep", "MapSweep", "Range", "WholeRange", "WidthRange"}
+    made = {each for each in written if each.__name__ in of_sweeps}
     joined = {each for each in written if each.__name__ == "Trial" or "By" in each.__name__}
     assert written - bases - made - joined == set()
 
