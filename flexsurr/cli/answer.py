@@ -24,8 +24,7 @@ def main(job: Job, cost: Path, caption: Path, table: Path, figure: Path, output:
     answered = answer(read_text_frame(cost))
     save_table(answered, table)
     save(answer_figure(answered), figure.with_suffix(""))
-    text = "\n\n".join([*in_words(answered), text_of(caption)])
-    whole = page(answered, TITLE, text, figure)
+    whole = page(answered, TITLE, "\n\n".join(in_words(answered)), figure, text_of(caption))
     for path, content in ((output, whole), (frame, _framed(whole))):
         with replacing(path) as beside:
             beside.write_text(content, encoding="utf-8")
@@ -35,8 +34,9 @@ def _framed(whole: str) -> str:
     """A page in a frame; wide where the report opens with it, away where that shows its graph of rules."""
     return f"""<style>
 .prose:has(#answer) {{ max-width: none; }}
-#answer {{ width: calc(100vw - 24rem); height: 94vh; border: 0; }}
-:has(> #rulegraph) #answer {{ display: none; }}
+ul:has(#answer) > :not(.prose) {{ display: none; }}
+#answer {{ width: calc(100vw - 18rem); height: calc(100vh - 8rem); border: 0; }}
+:has(> div#rulegraph) #answer {{ display: none; }}
 </style>
 <iframe id="answer" title="{TITLE}" srcdoc="{html.escape(whole)}"></iframe>
 """

@@ -26,20 +26,21 @@ LONG = 40
 """Characters from which words are broken into lines."""
 
 
-def save_page(frame: pd.DataFrame, title: str, caption: str, path: Path, figure: Path | None = None) -> None:
-    """Write the page of `frame`, there whole or not at all. Arguments are those of `page`."""
+def save_page(frame: pd.DataFrame, title: str, caption: str, path: Path) -> None:
+    """Write the `page` of `frame`, there whole or not at all."""
     with replacing(path) as beside:
-        beside.write_text(page(frame, title, caption, figure), encoding="utf-8")
+        beside.write_text(page(frame, title, caption), encoding="utf-8")
 
 
-def page(frame: pd.DataFrame, title: str, caption: str, figure: Path | None = None) -> str:
-    """A self-contained page: title, caption, an SVG if there is one, and the table.
+def page(frame: pd.DataFrame, title: str, caption: str, figure: Path | None = None, notes: str = "") -> str:
+    """A self-contained page: title, caption, an SVG if there is one, the table, and notes to it.
 
-    Numbers have four digits, what is unknown is empty. Blank lines divide the caption into paragraphs.
+    Numbers have four digits, what is unknown is empty. Blank lines divide the texts into paragraphs.
     """
     return _PAGE.format(
         title=html.escape(title),
-        paragraphs="\n".join(f"<p>{html.escape(text)}</p>" for text in caption.strip().split("\n\n")),
+        caption=_paragraphs(caption),
+        notes=_paragraphs(notes),
         figure="" if figure is None else _picture(figure, title),
         widths="\n".join(_widths(frame)),
         table=_table(frame),
@@ -47,6 +48,10 @@ def page(frame: pd.DataFrame, title: str, caption: str, figure: Path | None = No
         script=_packed("dt_bundle.js"),
         style=_packed("dt_bundle.css"),
     )
+
+
+def _paragraphs(text: str) -> str:
+    return "\n".join(f"<p>{html.escape(part)}</p>" for part in text.strip().split("\n\n") if part)
 
 
 def number(value: float) -> str:
@@ -123,9 +128,10 @@ tr:hover td {{ background: #f3f6fa; }}
 </head>
 <body>
 <h1>{title}</h1>
-{paragraphs}
+{caption}
 {figure}
 {table}
+{notes}
 <script type="module">
 async function unpacked(text) {{
   const bytes = Uint8Array.from(atob(text), (character) => character.charCodeAt(0));

@@ -163,7 +163,8 @@ def test_a_browser_draws_the_figures(quick, browser, study, name):
 def test_the_report_opens_with_the_answer_and_not_with_the_graph_of_rules(quick, browser):
     browser.get((quick.results / "report.html").as_uri())
     wait_for(browser, "Results", "measured against everything")
-    assert browser.find_elements(By.ID, "rulegraph") == []
+    assert browser.find_elements(By.CSS_SELECTOR, "div#rulegraph") == []
+    assert "made by" not in text_of(browser).lower()
     (frame,) = browser.find_elements(By.ID, "answer")
     assert frame.size["width"] > 700
     assert frame.size["height"] > 500
@@ -180,7 +181,9 @@ def test_the_report_opens_with_the_answer_and_not_with_the_graph_of_rules(quick,
     assert_sorted(browser, "tip_error_percent")
     browser.switch_to.default_content()
     click(browser, "Workflow")
-    WebDriverWait(browser, PATIENCE_S).until(lambda driver: driver.find_elements(By.ID, "rulegraph"))
+    WebDriverWait(browser, PATIENCE_S).until(
+        lambda driver: driver.find_elements(By.CSS_SELECTOR, "div#rulegraph")
+    )
     assert not browser.find_element(By.ID, "answer").is_displayed()
     assert complaints(browser) == []
 
