@@ -139,10 +139,12 @@ def _setup(setups: pd.DataFrame) -> "pd.Series[Any]":
     """The fastest that is allowed or, where none is, of those that err least."""
     allowed = setups[[_is_allowed(setup) for _, setup in setups.iterrows()]]
     if len(allowed):
-        return allowed.sort_values("wall_s_mean", kind="stable").iloc[0]
-    errors = setups["tip_error_percent"].fillna(np.inf)
-    as_good = setups[errors <= AS_GOOD * errors.min()]
-    return as_good.sort_values("wall_s_mean", kind="stable").iloc[0]
+        candidates = allowed
+    else:
+        errors = setups["tip_error_percent"].fillna(np.inf)
+        candidates = setups[errors <= AS_GOOD * errors.min()]
+    fastest: pd.Series[Any] = candidates.sort_values("wall_s_mean", kind="stable").iloc[0]
+    return fastest
 
 
 def _is_allowed(setup: "pd.Series[Any]") -> bool:
