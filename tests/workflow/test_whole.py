@@ -14,8 +14,8 @@ BEAM = "cantilever"
 
 TRAINING_COLUMNS = (
     "study,variant,run_id,architecture,configurations,hidden,activation,degree,options,scaling,optimiser,"
-    "learning_rate,weight_decay,batch_size,precision,device,loss,keep,patience,time_limit_s,seed,dataset,"
-    "epoch_limit,epochs,best_epoch,wall_s,processor_s,parameters,final_loss,train_nmse,validation_nmse,best_validation_nmse,published_loss,"
+    "learning_rate,weight_decay,batch_size,precision,device,loss,keep,patience,time_limit_s,give_up,seed,dataset,"
+    "status,reason,epoch_limit,epochs,best_epoch,wall_s,processor_s,parameters,final_loss,train_nmse,validation_nmse,best_validation_nmse,published_loss,"
     "sampling,lattice,networks,inputs"
 )
 COST_COLUMNS = (
@@ -23,6 +23,14 @@ COST_COLUMNS = (
     "relative_to_described_percent,relative_to_described_std_percent,relative_to_numpy_percent,"
     "relative_to_compiled_percent,paper_percent,paper_std_percent,tip_error_percent,energy_drift_percent,"
     "diverged"
+)
+SWEEP_COLUMNS = (
+    "study,sweep,variant,architecture,trials,finished,stopped,failed,processor_s,validation_nmse_median,"
+    "validation_nmse_best,long_response_error_percent_best,best_run_id,outcome"
+)
+ANSWER_COLUMNS = (
+    "study,response,variant,model,pays,times_as_fast,tip_error_percent,wall_s,integrator,reference,"
+    "reference_integrator,reference_wall_s,times_as_fast_as_numpy,times_as_fast_as_described"
 )
 STATIC_COLUMNS = "load_N,x_exact_m,z_exact_m,x_fom_m,z_fom_m,x_rom_m,z_rom_m"
 FREQUENCY_COLUMNS = "structure,mode,fom_rad_s,rom_rad_s,published_fom_rad_s,published_rom_rad_s"
@@ -33,6 +41,8 @@ FREQUENCY_COLUMNS = "structure,mode,fom_rad_s,rom_rad_s,published_fom_rad_s,publ
     [
         ("training", TRAINING_COLUMNS),
         ("cost", COST_COLUMNS),
+        ("sweeps", SWEEP_COLUMNS),
+        ("answer", ANSWER_COLUMNS),
         ("static_tip", STATIC_COLUMNS),
         ("natural_frequencies", FREQUENCY_COLUMNS),
     ],
