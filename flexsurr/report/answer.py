@@ -103,7 +103,7 @@ def in_words(table: pd.DataFrame) -> list[str]:
         cases = rows.assign(pays=rows["pays"] == "yes").groupby(["response", "variant"])["pays"].max()
         within = rows[rows["tip_error_percent"] <= ALLOWED_PERCENT]
         if within.empty:
-            said.append(f"{study}: no surrogate errs by less than {ALLOWED_PERCENT:g} % of the peak.")
+            said.append(f"{study}: {_none_in_words(rows)}")
             continue
         best = within.sort_values("times_as_fast").iloc[-1]
         pays = (
@@ -111,6 +111,19 @@ def in_words(table: pd.DataFrame) -> list[str]:
         )
         said.append(f"{study}: {pays}. {_best_in_words(best)}")
     return said
+
+
+def _none_in_words(rows: pd.DataFrame) -> str:
+    none = f"no surrogate stays within {ALLOWED_PERCENT:g} % of the peak."
+    known = rows[rows["tip_error_percent"].notna()].sort_values("tip_error_percent", kind="stable")
+    if known.empty:
+        return none
+    best = known.iloc[0]
+    model, error = name_of(best["model"]), f"{best['tip_error_percent']:.2g} %"
+    return (
+        f"{none} The one that errs least, {model}, does so by {error}, and is {times(best['times_as_fast'])} times as fast as the compiled reference, "
+        f"{name_of(best['reference'])}."
+    )
 
 
 def _best_in_words(best: "pd.Series[Any]") -> str:
