@@ -119,10 +119,10 @@ def _none_in_words(rows: pd.DataFrame) -> str:
     if known.empty:
         return none
     best = known.iloc[0]
-    model, error = name_of(best["model"]), f"{best['tip_error_percent']:.2g} %"
+    model, ratio = name_of(best["model"]), times(best["times_as_fast"])
     return (
-        f"{none} The one that errs least, {model}, does so by {error}, and is {times(best['times_as_fast'])} times as fast as the compiled reference, "
-        f"{name_of(best['reference'])}."
+        f"{none} The one that errs least, {model}, does so by {best['tip_error_percent']:.2g} %, and is "
+        f"{ratio} times as fast as the compiled reference, {name_of(best['reference'])}."
     )
 
 
