@@ -52,7 +52,16 @@ class StateField(Architecture):
     """
 
 
-class FieldNetwork(StateField):
+class TrainedField(StateField):
+    """What is trained epoch by epoch."""
+
+    samples_per_trajectory: Count | None = None
+    """Trains on at most so many samples of each trajectory, evenly spread; validation sees all of its own.
+    Samples that lie close in time say almost the same, and each costs as much as any other.
+    """
+
+
+class FieldNetwork(TrainedField):
     """A network of the states' rates."""
 
     architecture: Literal["mlp", "hnn", "dissipative_hnn"]
@@ -80,7 +89,7 @@ class FieldPolynomial(StateField):
     """Degree of the polynomials."""
 
 
-class PortHamiltonianNetwork(StateField):
+class PortHamiltonianNetwork(TrainedField):
     """A network of the mass matrix."""
 
     architecture: Literal["port_hamiltonian"]
@@ -99,7 +108,7 @@ def _of_users(architecture: str) -> str:
     return architecture
 
 
-class TorchModule(StateField):
+class TorchModule(TrainedField):
     """A network of the user's own, by its file and class."""
 
     architecture: Annotated[str, AfterValidator(_of_users)]

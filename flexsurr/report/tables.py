@@ -30,6 +30,7 @@ TRAINING_COLUMNS = (
     "degree",
     "options",
     "scaling",
+    "samples_per_trajectory",
     "optimiser",
     "learning_rate",
     "weight_decay",

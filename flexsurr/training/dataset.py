@@ -2,7 +2,7 @@
 
 import hashlib
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Protocol
@@ -89,6 +89,19 @@ class Dataset:
         """Itself."""
         return self
 
+    def thinned(self, most: int) -> "Dataset":
+        """The same with at most so many training samples of each trajectory, evenly spread over its own."""
+        rows = [
+            np.flatnonzero(self.trajectory_train == number) for number in np.unique(self.trajectory_train)
+        ]
+        kept = np.sort(np.concatenate([_spread(of_one, most) for of_one in rows]))
+        return replace(
+            self,
+            x_train=self.x_train[kept],
+            dx_train=self.dx_train[kept],
+            trajectory_train=self.trajectory_train[kept],
+        )
+
 
 @dataclass(frozen=True)
 class ShardedDataset:
@@ -159,6 +172,10 @@ def for_each_piece(blocks: Iterable[Block], *uses: Callable[[Array, Array], None
             for use in uses:
                 use(x[first : first + PIECE], dx[first : first + PIECE])
         del x, dx  # which would otherwise live until the next block is there
+
+
+def _spread(rows: NDArray[np.int64], most: int) -> NDArray[np.int64]:
+    return rows if len(rows) <= most else rows[np.linspace(0, len(rows) - 1, most).round().astype(np.int64)]
 
 
 def load_dataset(manifest_path: str | Path) -> Dataset:

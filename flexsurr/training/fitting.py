@@ -17,6 +17,7 @@ from flexsurr.config.trial import (
     Iterative,
     PortHamiltonianNetwork,
     TorchModule,
+    TrainedField,
     Trial,
 )
 from flexsurr.storage import Scales
@@ -69,7 +70,10 @@ def fit(trial: Trial, source: SampleSource, folder: str | Path, report: Report |
     if isinstance(trial, FieldPolynomial):
         return _fit_linear(trial, source, report)
     assert isinstance(trial, Iterative)  # as everything but a polynomial is
+    assert isinstance(trial, TrainedField)
     dataset = source.loaded()
+    if trial.samples_per_trajectory is not None:
+        dataset = dataset.thinned(trial.samples_per_trajectory)
     network, training, validation, optimiser = _begun(trial, dataset)
     progress, ending = run_epochs(
         optimiser,

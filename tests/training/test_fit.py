@@ -119,6 +119,27 @@ def test_crumbs_are_not_worth_waiting_for(tmp_path, monkeypatch):
     assert (result.best_epoch, result.epochs) == (6, 6)
 
 
+def test_few_samples_of_each_trajectory_train_and_all_validate(tmp_path):
+    few = fit(LM.model_copy(update={"epochs": 3, "samples_per_trajectory": 5}), DATASET, tmp_path / "few")
+    part = fit(LM.model_copy(update={"epochs": 3}), DATASET.thinned(5), tmp_path / "part")
+    whole = fit(LM.model_copy(update={"epochs": 3}), DATASET, tmp_path / "whole")
+    np.testing.assert_array_equal(few.surrogate.parameters, part.surrogate.parameters)
+    assert few.validation_nmse == part.validation_nmse
+    assert not np.array_equal(few.surrogate.parameters, whole.surrogate.parameters)
+
+
+def test_the_samples_kept_of_a_trajectory_are_its_own_and_evenly_spread():
+    thin = DATASET.thinned(5)
+    np.testing.assert_array_equal(thin.x_validation, DATASET.x_validation)
+    for number in np.unique(DATASET.trajectory_train):
+        every = np.flatnonzero(DATASET.trajectory_train == number)
+        kept = thin.x_train[thin.trajectory_train == number]
+        places = [np.flatnonzero((DATASET.x_train[every] == x).all(axis=1))[0] for x in kept]
+        assert (places[0], places[-1], len(places)) == (0, len(every) - 1, 5)
+        assert np.ptp(np.diff(places)) <= 1
+    assert len(DATASET.thinned(10**6).x_train) == len(DATASET.x_train)
+
+
 def test_time_limit(tmp_path):
     trial = LM.model_copy(update={"epochs": 10**6, "time_limit_s": 0.05})
     result = fit(trial, DATASET, tmp_path)
