@@ -26,7 +26,7 @@ from flexsurr.evaluation.contenders import Contender, contenders
 from flexsurr.evaluation.energy import drift_percent, energy_error_percent
 from flexsurr.evaluation.published import beside
 from flexsurr.evaluation.ratios import PAPERS_INTEGRATOR, summary
-from flexsurr.evaluation.timing import measuring, wall_time
+from flexsurr.evaluation.timing import compile_ahead, measuring, wall_time
 from flexsurr.simulation import Trajectory, simulate
 from flexsurr.simulation.rhs import Array, Model
 
@@ -113,6 +113,13 @@ def measurements(
     t = sample_times(settings.duration_s, settings.output_step_s)
     cases = evaluation_cases(basis, study, response)
     references = list(reference_solutions(basis, variant, cases, t, settings.reference_integrator))
+    learned = list(learned)
+    # before torch is there: its threads would not survive a fork
+    compile_ahead(
+        partial(_first_steps, setup, basis, references[0])
+        for setup in setups([*contenders(basis, variant, surrogates), *learned], settings.integrators)
+        if setup.contender.steppable
+    )
     models = [*contenders(basis, variant, surrogates, with_torch=True), *learned]
     rows = []
     with measuring():
@@ -141,8 +148,7 @@ def _measure(
 ) -> dict[str, Any]:
     """Time one simulation and judge its trajectory."""
     model = setup.contender.under(basis, reference.case)
-    # the first steps load or compile what the timed ones use
-    _run(model, reference.t[:2], reference.case.x0, setup.integrator)
+    _first_steps(setup, basis, reference)
     trajectory, wall_s = wall_time(
         partial(_run, model, reference.t, reference.case.x0, setup.integrator), repeats
     )
@@ -169,6 +175,12 @@ def _measure(
             else drift_percent(own, trajectory.t, free_from_s)
         ),
     }
+
+
+def _first_steps(setup: Setup, basis: ModalBasis, reference: Reference) -> None:
+    """They load or compile what the timed ones use."""
+    model = setup.contender.under(basis, reference.case)
+    _run(model, reference.t[:2], reference.case.x0, setup.integrator)
 
 
 def _run(model: Model, t: Array, x0: Array, integrator: Integrator) -> Trajectory:

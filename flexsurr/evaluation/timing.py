@@ -1,10 +1,12 @@
 """Wall time of one simulation, on one thread."""
 
 import gc
+import os
 import statistics
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, suppress
+from multiprocessing import get_context
 from time import perf_counter
 from typing import TypeVar
 
@@ -31,6 +33,33 @@ def wall_time(run: Callable[[], Result], repeats: int = 1) -> tuple[Result, floa
         if collecting:
             gc.enable()
     return result, statistics.median(times)
+
+
+def compile_ahead(firsts: Iterable[Callable[[], object]]) -> None:
+    """Call each of `firsts` in one of as many child processes as there are cores, and wait for them.
+
+    Each is the first call of something compiled, whose machine code the child leaves on the disk, where
+    this process finds it at its own first call. An error is left for that call too. Children are forks:
+    call it before anything has started threads.
+    """
+    waiting = list(firsts)
+    cores = min(len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 1, len(waiting))
+    if cores < 2:
+        return
+    children = [
+        get_context("fork").Process(target=_call_all, args=(waiting[number::cores],))
+        for number in range(cores)
+    ]
+    for child in children:
+        child.start()
+    for child in children:
+        child.join()
+
+
+def _call_all(calls: Iterable[Callable[[], object]]) -> None:
+    for call in calls:
+        with suppress(Exception):
+            call()
 
 
 @contextmanager

@@ -17,6 +17,9 @@ from numba.extending import overload
 from numpy.typing import NDArray
 
 from flexsurr.kernel_cache import check_belongs, not_compiled
+from flexsurr.simulation.machine_code import name_by_content
+
+name_by_content()
 
 Array = NDArray[np.float64]
 

@@ -9,6 +9,7 @@ import time
 from pathlib import Path
 
 import pytest
+from numba.core.caching import IndexDataCacheFile
 
 from flexsurr import kernel_cache
 
@@ -50,6 +51,36 @@ def run(code, *path, **environment):
     if done.returncode:
         raise Refused(done.stderr)
     return done.stdout
+
+
+@pytest.mark.parametrize("last_to_write", ["first", "second"])
+def test_two_processes_that_compile_at_once_do_not_run_each_others_code(tmp_path, last_to_write):
+    """Both have read the index before either has written it."""
+    first, second, reader = (IndexDataCacheFile(str(tmp_path), "kernel", "stamp") for _ in range(3))
+    first._load_index = second._load_index = dict
+    order = [(first, "a", "code of a"), (second, "b", "code of b")]
+    for file, key, data in order if last_to_write == "second" else order[::-1]:
+        file.save(key, data)
+    found = {key: reader.load(key) for key in ("a", "b")}
+    assert found["a"] in ("code of a", None)
+    assert found["b"] in ("code of b", None)
+    reader.save("a", "code of a")
+    reader.save("b", "code of b")
+    assert (reader.load("a"), reader.load("b")) == ("code of a", "code of b")
+
+
+def test_the_code_is_there_before_the_index_leads_to_it(tmp_path, monkeypatch):
+    """A process killed in between leaves no entry without code."""
+    file = IndexDataCacheFile(str(tmp_path), "kernel", "stamp")
+
+    def killed(data):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(file, "_save_index", killed)
+    with pytest.raises(KeyboardInterrupt):
+        file.save("a", "code of a")
+    assert len(list(tmp_path.glob("*.nbc"))) == 1
+    assert IndexDataCacheFile(str(tmp_path), "kernel", "stamp").load("a") is None
 
 
 def test_the_next_process_compiles_nothing():
