@@ -2,6 +2,8 @@
 
 import gc
 import itertools
+import os
+from functools import partial
 
 import pytest
 
@@ -40,3 +42,20 @@ def test_what_is_there_is_exempt_from_collection_while_a_series_is_measured():
 def test_at_least_one_repeat():
     with pytest.raises(ValueError, match="at least 1"):
         timing.wall_time(lambda: None, repeats=0)
+
+
+def test_what_is_compiled_ahead_is_called_once_each_and_an_error_waits_for_its_own_call(tmp_path):
+    def first(number):
+        (tmp_path / str(number)).write_text(str(os.getpid()))
+        if number == 1:
+            raise ArithmeticError("diverged")
+
+    timing.compile_ahead(partial(first, number) for number in range(5))
+    written = {path.name: path.read_text() for path in tmp_path.iterdir()}
+    cores = len(os.sched_getaffinity(0))
+    if cores == 1:
+        assert written == {}
+    else:
+        assert sorted(written) == ["0", "1", "2", "3", "4"]
+        assert len(set(written.values())) == min(cores, 5)
+        assert str(os.getpid()) not in written.values()
