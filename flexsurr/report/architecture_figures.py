@@ -24,6 +24,9 @@ from flexsurr.report.style import (
 LARGEST_PERCENT = 1e3
 """Errors beyond, and responses that did not reach their end, stand at this height."""
 
+JUDGED = ("held_out_nmse", "long_response_error_percent_worst")
+"""What only runs have that finished."""
+
 BY_PAIRS = "by_pairs"
 """How the port-Hamiltonian forms and polynomials scale the states; their trials have no choice of it."""
 
@@ -50,6 +53,8 @@ def architecture_errors(metrics: pd.DataFrame) -> Figure:
     study's own dataset, an open one on a further dataset. On the dashed line stand the runs one of whose
     responses did not reach its end.
     """
+    # where no run has finished, none says what it errs by
+    metrics = metrics.reindex(columns=[*metrics.columns, *(name for name in JUDGED if name not in metrics)])
     variants = [variant for variant in VARIANTS if variant in set(metrics["variant"])]
     figure = new_figure(PAGE_IN, 3.9)
     axes = figure.subplots(1, len(variants), sharex=True, sharey=True, squeeze=False)[0]

@@ -119,6 +119,24 @@ def test_a_study_of_one_variant_is_drawn_too(name, request):
     assert all(ax.has_data() for ax in figure.axes)
 
 
+OF_SURROGATES = [
+    name
+    for name, product in OF_BEAMS.items()
+    if any(read.startswith(("response", "energy", "cost", "metrics", "relatives")) for read in product.reads)
+]
+
+
+@pytest.mark.parametrize("name", OF_SURROGATES)
+def test_where_no_trial_has_finished_the_references_are_drawn(name, request):
+    *others, frame = read_by(name, request)
+    if "model" in frame:
+        frame = frame[frame["model"].isin(["reference", "rom", "fom"])]
+    else:  # of runs: such a study has none that is scored
+        scored = [column for column in frame if column.startswith(("held_out", "long_response", "diverged"))]
+        frame = frame.drop(columns=scored).assign(status="stopped", reason="", validation_nmse=None)
+    assert DRAW[name](*others, frame).axes
+
+
 def test_the_whole_pareto_front_is_labelled(request):
     cost = request.getfixturevalue("cost")
     panel = cost[(cost["variant"] == "hamiltonian") & (cost["response"] == "free")]

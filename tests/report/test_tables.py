@@ -102,6 +102,16 @@ def test_a_missing_column_is_named(name, frames, tabulate):
         tabulate(name, frames[name].drop(columns=column))
 
 
+@pytest.mark.parametrize("name", ["training", "architectures", "seeds", "sweeps"])
+def test_where_no_trial_has_finished_tables_of_runs_have_all_of_them(name, relatives, metrics, sweeps):
+    """`sweeps` has its own tests of what such a table says."""
+    frame = metrics if name in ("training", "sweeps") else relatives.assign(configuration=relatives["run_id"])
+    scored = [column for column in frame if column.startswith(("held_out", "long_response", "diverged"))]
+    frame = frame.drop(columns=scored).assign(status="stopped", reason="hopeless", validation_nmse=None)
+    made = TABULATE[name](*([sweeps] if name == "sweeps" else []), frame)
+    assert made["trials"].sum() == sum(map(len, sweeps.values())) if name == "sweeps" else len(made) >= 8
+
+
 def test_failed_runs_stay_in_the_table_of_training(frames):
     made = TABULATE["training"](frames["training"])
     assert len(made) == len(frames["training"])
