@@ -1,5 +1,6 @@
 """Choose the surrogates of a study that are evaluated, and end its sweeps."""
 
+import logging
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,11 @@ from flexsurr.training import select
 from flexsurr.training.selection import select_maps
 from flexsurr.training.tracking import end_sweep, read_store
 
+log = logging.getLogger(__name__)
+
 DEFAULT_SWEEP = "default"
+
+SAYS_WHY = "table sweeps.csv says why"
 
 
 def main(job: Job, runs: Path, store: Path, output: Path) -> None:
@@ -35,7 +40,9 @@ def main(job: Job, runs: Path, store: Path, output: Path) -> None:
                 known_as = name if sweep == DEFAULT_SWEEP else f"{name}_{sweep}"
                 selection.setdefault(variant, {})[known_as] = entry
     if job.get("maps") and "network" not in selection:
-        raise StorageError(f"{runs}: no network of {job['study']} has finished; see their metrics.json")
+        raise StorageError(f"{runs}: no network of {job['study']} has finished; its {SAYS_WHY}")
+    if not selection:
+        log.warning("no trial of %s has finished; its %s", job["study"], SAYS_WHY)
     write_json(output, selection)
     end_sweep(read_store(store), job["study"], metrics)
 
