@@ -100,4 +100,4 @@ browser:
 
 clean:
 	find results -mindepth 1 -maxdepth 1 ! -name README.md -exec rm -rf {} +
-	rm -rf .snakemake
+	rm -rf results-smoke build .snakemake
