@@ -57,7 +57,7 @@ check: $(INSTALLED)
 # Everything made anew: a second run would do nothing, and say so in three seconds.
 smoke: $(INSTALLED)
 	rm -rf results-smoke
-	snakemake --cores $(CORES) --configfile config/presets/quick.yaml --config results=results-smoke -- cantilever
+	snakemake --cores $(CORES) --configfile config/presets/quick.yaml config/presets/smoke.yaml --config results=results-smoke
 
 # The quick tests first; those that run the workflow and look at its pages last.
 test: check browser
