@@ -11,7 +11,7 @@ INSTALLED := $(VENV)/.installed
 export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
 export MLFLOW_DISABLE_TELEMETRY := true
 
-.PHONY: help install reproduce report smoke check test coverage audit reference docs ui benchmark browser clean
+.PHONY: help install reproduce report smoke check test coverage audit reference docs ui benchmark browser slurm clean
 
 help:
 	@echo "make install      the environment alone, in .venv"
@@ -62,7 +62,7 @@ smoke: $(INSTALLED)
 		results-smoke/tables/cost.csv results-smoke/figures/cantilever/figure_11.svg
 
 # The quick tests first; those that run the workflow and look at its pages last.
-test: check browser
+test: check browser slurm
 	OMP_NUM_THREADS=1 python -m pytest -n logical --dist loadfile --ignore=tests/workflow tests
 	python -m pytest tests/workflow
 
@@ -97,6 +97,18 @@ browser:
 		apt-get update -q && apt-get install -q -y --no-install-recommends chromium chromium-driver; \
 	else \
 		echo "tests need chromium and chromedriver on the PATH; install them, or run make browser as root"; \
+		exit 1; \
+	fi
+
+# Tests run the workflow on a Slurm of this machine alone, which they start and stop themselves.
+slurm:
+	@PATH="$$PATH:/usr/sbin"; \
+	missing=; for tool in munged slurmctld slurmd sbatch; do command -v $$tool > /dev/null || missing=yes; done; \
+	if test -z "$$missing"; then exit 0; fi; \
+	if test "$$(id -u)" = 0 && command -v apt-get > /dev/null; then \
+		apt-get update -q && apt-get install -q -y --no-install-recommends slurm-wlm munge; \
+	else \
+		echo "tests need Slurm and munge (Debian: slurm-wlm, munge); install them, or run make slurm as root"; \
 		exit 1; \
 	fi
 

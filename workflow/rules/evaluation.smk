@@ -72,7 +72,7 @@ rule evaluate:
         f"{RESULTS}/logs/evaluate/{{study}}-{{variant}}-{{response}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/evaluate/{{study}}-{{variant}}-{{response}}.tsv"
-    threads: TIMING_CORES
+    threads: timing_cores
     resources:
         mem_mb=2000,
         runtime=240,
@@ -125,7 +125,7 @@ rule rollout_cost:
         f"{RESULTS}/logs/rollout_cost/{{study}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/rollout_cost/{{study}}.tsv"
-    threads: TIMING_CORES
+    threads: timing_cores
     resources:
         mem_mb=2000,
         runtime=240,

@@ -80,7 +80,7 @@ rule fly_randomly:
         f"{RESULTS}/logs/fly_randomly/{{study}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/fly_randomly/{{study}}.tsv"
-    threads: TIMING_CORES
+    threads: timing_cores
     resources:
         mem_mb=3000,
         runtime=240,

@@ -36,9 +36,6 @@ try:
 except ConfigurationError as error:
     raise WorkflowError(str(error)) from None
 
-# What a job that measures time keeps for itself: all cores, so that it runs alone. Where jobs go elsewhere,
-# nobody has said how many there are.
-TIMING_CORES = plan.settings.timing.cores or workflow.resource_settings.cores or 1
 RESULTS = plan.settings.results
 STUDIES = list(plan.settings.studies)
 
@@ -46,6 +43,15 @@ STUDIES = list(plan.settings.studies)
 if workflow.is_main_process:
     for line in plan.trials(Path(RESULTS) / "runs"):
         logger.info(line)
+
+
+def timing_cores(wildcards):
+    """What a job that measures time keeps for itself: all cores of this machine, so that it runs alone.
+
+    A job that goes elsewhere asks for one. That its node does nothing else, it asks for in profiles/slurm.
+    """
+    here = workflow.resource_settings.cores if workflow.local_exec else 1
+    return plan.settings.timing.cores or here or 1
 
 
 def write(name, job):
