@@ -44,6 +44,15 @@ class Timing(Record):
     """Cores that a job which measures time keeps others off. None: all, so that it runs alone."""
 
 
+class Batches(Record):
+    """How much small work one job does, one after another."""
+
+    trials_per_job: Count | None = None
+    """Trials, each with its score. None: a job each up to 200 of a study; more make 128 jobs."""
+    shards_per_job: Count | None = None
+    """Shards of a dataset. None: a job each up to 200; more make 128 jobs."""
+
+
 class Settings(Record):
     """What one invocation is to do."""
 
@@ -55,6 +64,8 @@ class Settings(Record):
     """Where runs are recorded, for the page on which they are compared."""
     timing: Timing = Timing()
     """How time is measured."""
+    batches: Batches = Batches()
+    """How much small work one job does."""
     overrides: dict[str, dict[str, Any]] = Field(default_factory=dict)
     """For a study's name, values that replace those of its file, nested as they are there."""
 

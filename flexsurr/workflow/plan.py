@@ -1,6 +1,7 @@
 """The plan of a configuration: a plan for each of its studies, and the figures and tables of all."""
 
-from collections.abc import Mapping
+import re
+from collections.abc import Iterable, Mapping
 from fnmatch import fnmatch
 from functools import cached_property
 from pathlib import Path
@@ -8,6 +9,7 @@ from pathlib import Path
 from flexsurr.config.settings import Configuration
 from flexsurr.config.sources import AnyStudy, ResolvedSampleStudy, ResolvedStudy
 from flexsurr.report.catalogue import FIGURES, OF_AIRCRAFT, TABLES, Product
+from flexsurr.workflow.batches import batch_of_shard, batches_of_runs, shards_of_batch
 from flexsurr.workflow.files_plan import FilesPlan
 from flexsurr.workflow.sample_plan import SamplePlan
 from flexsurr.workflow.study_plan import Job, Run
@@ -69,6 +71,67 @@ class Plan:
             count = len(study.runs)
             lines.append(f"{name}: {count} trial{'s' * (count != 1)}, {new or 'none'} of them new")
         return lines
+
+    @cached_property
+    def trial_batches(self) -> dict[str, dict[str, list[str]]]:
+        """The run_ids of each batch of each study; none of a study whose trials have a job each."""
+        per_job = self.settings.batches.trials_per_job
+        return {name: batches_of_runs(list(study.runs), per_job) for name, study in self.studies.items()}
+
+    def batch_of_trials(self, study: str, batch: str) -> Job:
+        """The trials of one batch: of each its training and its score, and the files that they read."""
+        of = self.studies[study]
+        return {
+            "trials": {
+                key: {
+                    "train": of.train(key),
+                    "trains_on": of.trains_on(key),
+                    "score": of.score(key),
+                    "scored_on": of.scored_on(key),
+                }
+                for key in self.trial_batches[study][batch]
+            }
+        }
+
+    def read_by_trials(self, study: str, batch: str) -> list[str]:
+        """The files below the results that the trials of one batch read."""
+        of, keys = self.studies[study], self.trial_batches[study][batch]
+        return [file for key in keys for file in (*of.trains_on(key), *of.scored_on(key))]
+
+    def shards(self, study: str, data: str, batch: str) -> Job:
+        """The shards of one batch, by their files."""
+        of = self.studies[study]
+        assert not isinstance(of, FilesPlan)  # whose files make one shard
+        return {
+            "shards": {
+                of.shard_file(data, number): of.simulate(data, number)
+                for number in shards_of_batch(batch, of.shards(data))
+            }
+        }
+
+    def waits_for(self, files: Iterable[str]) -> list[str]:
+        """What a job waits for that reads `files`, below the results: they, or what their batches leave."""
+        return list(dict.fromkeys(map(self._left_by_its_batch, files)))
+
+    def _left_by_its_batch(self, file: str) -> str:
+        if file.startswith("runs/"):
+            return self._trials_left.get(file.split("/")[1], file)
+        if shard := re.fullmatch(r"datasets/(.+)/(.+)/shard-(\d+)\.parquet", file):
+            study, data, number = shard.groups()
+            total, per_job = self.studies[study].shards(data), self.settings.batches.shards_per_job
+            batch = batch_of_shard(int(number), total, per_job)
+            return f"datasets/{study}/{data}/shards-{batch}.json" if batch else file
+        return file
+
+    @cached_property
+    def _trials_left(self) -> dict[str, str]:
+        """What the batch of a run leaves, by its run_id."""
+        return {
+            key: f"batches/{study}/trials-{batch}.json"
+            for study, batches in self.trial_batches.items()
+            for batch, keys in batches.items()
+            for key in keys
+        }
 
     def store(self) -> Job:
         """The tracking store."""

@@ -41,7 +41,13 @@ class SamplePlan(StudyPlan):
     """
 
     source = "samples"
-    commands: ClassVar = {"simulate": "sample", "train": "train-map", "score": "score-map"}
+    commands: ClassVar = {
+        "simulate": "sample",
+        "shards": "sample-shards",
+        "train": "train-map",
+        "score": "score-map",
+        "trials": "map-trials",
+    }
 
     def __init__(self, resolved: ResolvedSampleStudy) -> None:
         super().__init__(resolved.name, trials_of(resolved.sweeps, resolved.study.sweeps, {}))
@@ -65,11 +71,6 @@ class SamplePlan(StudyPlan):
     def shards(self, data: str) -> int:
         """Number of shards of the samples called `data`."""
         return self.resolved.study.dataset.shards
-
-    def files(self, data: str) -> list[str]:
-        """The shards of the samples called `data`, below the results."""
-        folder = f"datasets/{self.name}/{data}"
-        return [f"{folder}/shard-{shard:04d}.parquet" for shard in range(self.shards(data))]
 
     def datasets(self) -> list[str]:
         """The names of all samples that a trial is fitted to."""
@@ -107,7 +108,7 @@ class SamplePlan(StudyPlan):
 
     def trains_on(self, key: str) -> list[str]:
         """The shards of a fit's samples, below the results."""
-        return self.files(self.runs[key].variant)
+        return self.shard_files(self.runs[key].variant)
 
     def score(self, key: str) -> Job:
         """What training says of a fit is all that there is."""

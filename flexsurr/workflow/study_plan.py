@@ -92,6 +92,10 @@ class StudyPlan(ABC):
         """The names of the files that its evaluation makes."""
 
     @abstractmethod
+    def shards(self, data: str) -> int:
+        """Number of shards of the data in the folder `data`."""
+
+    @abstractmethod
     def train(self, key: str) -> Job:
         """One training run."""
 
@@ -106,6 +110,14 @@ class StudyPlan(ABC):
     @abstractmethod
     def scored_on(self, key: str) -> list[str]:
         """The files that a run is scored on, below the results."""
+
+    def shard_file(self, data: str, number: int) -> str:
+        """One shard of the data in the folder `data`, below the results."""
+        return f"datasets/{self.name}/{data}/shard-{number:04d}.parquet"
+
+    def shard_files(self, data: str) -> list[str]:
+        """All of them."""
+        return [self.shard_file(data, number) for number in range(self.shards(data))]
 
     def command(self, rule: str) -> str:
         """The command by which `rule` makes what this study needs."""

@@ -1,4 +1,4 @@
-"""A Slurm of this machine alone, in a folder: nothing of the machine's own configuration is read or written."""
+"""A Slurm of this machine alone, in a folder: the machine's own configuration is left alone."""
 
 import getpass
 import os
@@ -107,7 +107,9 @@ def one_machine_slurm(folder: Path) -> Iterator[Slurm]:
     slurm = Slurm(folder / "commands")
     with ExitStack() as running:
         # forced, since the folder of the socket is not open to everyone
-        running.enter_context(_daemon("munged", ["--foreground", "--force", f"--key-file={key}", *munge], folder))
+        running.enter_context(
+            _daemon("munged", ["--foreground", "--force", f"--key-file={key}", *munge], folder)
+        )
         _wait_for((folder / "munge.socket").exists)
         running.enter_context(_daemon("slurmctld", ["-D", "-c", "-f", str(configuration)], folder))
         running.enter_context(_daemon("slurmd", ["-D", "-N", node, "-f", str(configuration)], folder))

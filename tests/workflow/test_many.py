@@ -1,6 +1,12 @@
-"""Many trials and shards: no command line grows with their number."""
+"""Many trials and shards: no command line grows with their number, and they share jobs."""
 
 import re
+import shutil
+from pathlib import Path
+
+import pytest
+
+from flexsurr.storage import read_json
 
 BEAM = "cantilever"
 TARGETS = (f"results/selected/{BEAM}.json", f"results/tables/{BEAM}/training.html")
@@ -23,3 +29,53 @@ def test_no_command_grows_with_trials_or_shards(make_project):
     short, long = commands(few), commands(many)
     assert {"simulate", "manifest", "train", "score", "select", "tabulate"} <= short.keys()
     assert {name: len(line) for name, line in long.items()} == {name: len(short[name]) for name in long}
+
+
+@pytest.fixture(scope="module")
+def in_batches(make_project):
+    """The quick cantilever with several trials and shards in a job."""
+    project = make_project()
+    project.change("config/config.yaml", "batches", {"trials_per_job": 4, "shards_per_job": 2})
+    project.run_well(*TARGETS)
+    return project
+
+
+def without_times(metrics: Path) -> dict:
+    return {key: value for key, value in read_json(metrics).items() if key not in ("wall_s", "processor_s")}
+
+
+def test_batches_make_what_single_jobs_make(quick, in_batches):
+    study = in_batches.plan.studies[BEAM]
+    for variant in study.variants:
+        manifest = f"datasets/{BEAM}/{variant}/manifest.json"
+        assert read_json(in_batches.results / manifest) == read_json(quick.results / manifest)
+    for key in study.runs:
+        metrics = f"runs/{key}/metrics.json"
+        assert without_times(in_batches.results / metrics) == without_times(quick.results / metrics)
+    jobs = in_batches.scheduled("--forceall", *TARGETS)
+    assert "train" not in jobs
+    assert "simulate" not in jobs
+    assert jobs["trials"] <= len(study.runs) / 2
+    assert jobs["shards"] == len(study.variants)
+
+
+def test_a_batch_makes_again_only_the_trial_that_is_gone(in_batches, make_project):
+    project = make_project(in_batches)
+    batches = project.plan.trial_batches[BEAM]
+    batch, keys = max(batches.items(), key=lambda item: len(item[1]))
+    lost, *kept = keys
+    assert kept
+    shutil.rmtree(project.results / "runs" / lost)
+    (project.results / f"batches/{BEAM}/trials-{batch}.json").unlink()
+    before = {key: (project.results / f"runs/{key}/weights.npz").stat().st_mtime_ns for key in kept}
+    project.run_well(*TARGETS)
+    assert (project.results / f"runs/{lost}/metrics.json").is_file()
+    assert {key: (project.results / f"runs/{key}/weights.npz").stat().st_mtime_ns for key in kept} == before
+
+
+def test_the_jobs_of_a_large_sweep_do_not_grow_with_it(make_project):
+    project = make_project()
+    project.change(SWEEP, "spaces.0.seed", list(range(150)))
+    jobs = project.scheduled(TARGETS[0])
+    assert 64 < jobs["trials"] <= 128
+    assert "train" not in jobs

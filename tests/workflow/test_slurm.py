@@ -1,4 +1,4 @@
-"""The workflow on a real Slurm of this machine: the same tables, few jobs, and what is timed has its node alone."""
+"""The workflow on a real Slurm: the same tables, few jobs, and what is timed has its node alone."""
 
 import os
 import re
@@ -16,7 +16,10 @@ OF_THIS_SLURM = ("--slurm-status-command", "squeue", "--slurm-no-account")
 
 @pytest.fixture(scope="module")
 def slurm(tmp_path_factory):
-    with one_machine_slurm(tmp_path_factory.mktemp("slurm")) as running, pytest.MonkeyPatch.context() as patch:
+    with (
+        one_machine_slurm(tmp_path_factory.mktemp("slurm")) as running,
+        pytest.MonkeyPatch.context() as patch,
+    ):
         patch.setenv("PATH", f"{running.commands}{os.pathsep}{os.environ['PATH']}")
         yield running
 

@@ -7,6 +7,7 @@ wildcard_constraints:
     data=r"(hamiltonian|as_printed)(-\w+)?|files|(pseudo_random|sobol)(-linear_in_modes)?",
     response="free|forced",
     shard=r"\d+",
+    batch=r"\d+-of-\d+",
     figure="[a-z0-9_]+",
     table="[a-z0-9_]+",
 
@@ -56,12 +57,33 @@ rule simulate:
         "python -m flexsurr {params.command} --job {params.job:q} --output {output:q} > {log:q} 2>&1"
 
 
+rule shards:
+    # Where there are many: each is written as soon as it is made, and made once.
+    output:
+        f"{RESULTS}/datasets/{{study}}/{{data}}/shards-{{batch}}.json",
+    log:
+        f"{RESULTS}/logs/shards/{{study}}-{{data}}-{{batch}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/shards/{{study}}-{{data}}-{{batch}}.tsv"
+    threads: 1
+    resources:
+        mem_mb=2000,
+        runtime=360,
+    params:
+        job=job("shards", "study", "data", "batch"),
+        command=lambda w: plan.studies[w.study].command("shards"),
+        code=lambda w: code(plan.studies[w.study].command("shards")),
+        results=lambda w: RESULTS,
+    message:
+        "simulating shards of {wildcards.study}, {wildcards.data}: batch {wildcards.batch}"
+    shell:
+        "python -m flexsurr {params.command} --job {params.job:q} --results {params.results:q}"
+        " --output {output:q} > {log:q} 2>&1"
+
+
 rule manifest:
     input:
-        shards=lambda w: expand(
-            f"{RESULTS}/datasets/{w.study}/{w.data}/shard-{{shard:04d}}.parquet",
-            shard=range(plan.studies[w.study].shards(w.data)),
-        ),
+        shards=lambda w: needed(plan.studies[w.study].shard_files(w.data)),
     output:
         f"{RESULTS}/datasets/{{study}}/{{data}}/manifest.json",
     log:

@@ -4,13 +4,10 @@
 rule accuracy:
     input:
         selection=f"{RESULTS}/selected/{{study}}.json",
-        shards=lambda w: expand(
-            f"{RESULTS}/{{file}}",
-            file=[
-                file
-                for data in plan.studies[w.study].datasets()
-                for file in plan.studies[w.study].files(data)
-            ],
+        shards=lambda w: needed(
+            file
+            for data in plan.studies[w.study].datasets()
+            for file in plan.studies[w.study].shard_files(data)
         ),
     output:
         accuracy=f"{RESULTS}/evaluation/{{study}}/accuracy.parquet",

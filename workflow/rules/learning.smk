@@ -11,16 +11,9 @@ onstart:
     shell("python -m flexsurr store --job {tracked:q} --output {STORE:q}")
 
 
-def run_command(rule, wildcards):
-    """The command by which `rule` makes a run: one for fields, one for maps."""
-    return plan.study_of(wildcards.run_id).command(rule)
-
-
 rule train:
     input:
-        data=lambda w: expand(
-            f"{RESULTS}/{{file}}", file=plan.study_of(w.run_id).trains_on(w.run_id)
-        ),
+        data=lambda w: needed(plan.study_of(w.run_id).trains_on(w.run_id)),
     output:
         parameters=f"{RESULTS}/runs/{{run_id}}/parameters.json",
         weights=f"{RESULTS}/runs/{{run_id}}/weights.npz",
@@ -37,10 +30,10 @@ rule train:
         runtime=720,
     params:
         job=job("train", "run_id"),
-        command=lambda w: run_command("train", w),
-        code=lambda w: code(run_command("train", w)),
+        command=lambda w: plan.study_of(w.run_id).command("train"),
+        code=lambda w: code(plan.study_of(w.run_id).command("train")),
         data=lambda w, input: sorted({os.path.dirname(file) for file in input.data}),
-        folder=f"{RESULTS}/runs/{{run_id}}",
+        folder=lambda w, output: os.path.dirname(output.weights),
         store=STORE,
     message:
         "training {wildcards.run_id}"
@@ -54,9 +47,7 @@ rule score:
         fit=rules.train.output.fit,
         weights=rules.train.output.weights,
         best=rules.train.output.best,
-        manifest=lambda w: expand(
-            f"{RESULTS}/{{file}}", file=plan.study_of(w.run_id).scored_on(w.run_id)
-        ),
+        manifest=lambda w: needed(plan.study_of(w.run_id).scored_on(w.run_id)),
     output:
         f"{RESULTS}/runs/{{run_id}}/metrics.json",
     log:
@@ -69,8 +60,8 @@ rule score:
         runtime=60,
     params:
         job=job("score", "run_id"),
-        command=lambda w: run_command("score", w),
-        code=lambda w: code(run_command("score", w)),
+        command=lambda w: plan.study_of(w.run_id).command("score"),
+        code=lambda w: code(plan.study_of(w.run_id).command("score")),
     message:
         "scoring {wildcards.run_id}"
     shell:
@@ -78,12 +69,37 @@ rule score:
         " --best {input.best:q} --manifest {input.manifest:q} --output {output:q} > {log:q} 2>&1"
 
 
+rule trials:
+    # Where there are many: training and score of each, one trial after another. What is there stays.
+    input:
+        data=lambda w: needed(plan.read_by_trials(w.study, w.batch)),
+    output:
+        f"{RESULTS}/batches/{{study}}/trials-{{batch}}.json",
+    log:
+        f"{RESULTS}/logs/trials/{{study}}-{{batch}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/trials/{{study}}-{{batch}}.tsv"
+    threads: 1
+    resources:
+        mem_mb=3000,
+        runtime=720,
+    params:
+        job=job("batch_of_trials", "study", "batch"),
+        command=lambda w: plan.studies[w.study].command("trials"),
+        code=lambda w: code(plan.studies[w.study].command("trials")),
+        results=lambda w: RESULTS,
+        store=STORE,
+        trials=lambda w: len(plan.trial_batches[w.study][w.batch]),
+    message:
+        "training {params.trials} trials of {wildcards.study}: batch {wildcards.batch}"
+    shell:
+        "python -m flexsurr {params.command} --job {params.job:q} --results {params.results:q}"
+        " --store {params.store:q} --output {output:q} > {log:q} 2>&1"
+
+
 rule select:
     input:
-        metrics=lambda w: expand(
-            f"{RESULTS}/runs/{{run_id}}/metrics.json",
-            run_id=plan.studies[w.study].runs,
-        ),
+        metrics=lambda w: needed(plan.files(w.study, "metrics")),
     output:
         f"{RESULTS}/selected/{{study}}.json",
     log:

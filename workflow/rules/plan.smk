@@ -3,6 +3,7 @@
 import json
 import os
 import sys
+from functools import cache
 from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
@@ -23,8 +24,10 @@ for variable in (
 ):
     os.environ[variable] = "1"
 # Jobs run in the Python that runs Snakemake, whether or not its environment is activated.
-os.environ["PATH"] = os.pathsep.join(
-    [str(Path(sys.executable).parent), os.environ["PATH"]]
+os.environ.update(
+    PATH=os.pathsep.join(
+        [str(Path(sys.executable).parent), os.environ.get("PATH", os.defpath)]
+    )
 )
 
 # In the order in which they are laid on top of one another: Snakemake lists its own `configfile:` last.
@@ -65,11 +68,27 @@ def job(rule, *keys):
 
     def path(wildcards):
         values = [wildcards[key] for key in keys]
-        return write("/".join([rule, "-".join(values)]), plan.job(rule, *values))
+        return write(f"{rule}/{'-'.join(values)}", plan.job(rule, *values))
 
     return path
 
 
+def needed(files):
+    """What a job waits for that reads `files`, which are named below the results."""
+    return [f"{RESULTS}/{file}" for file in plan.waits_for(files)]
+
+
+@cache
 def code(command):
     """The digest of the code behind a command, so that editing it runs its jobs again."""
     return code_digest(f"flexsurr.cli.{command.replace('-', '_')}")
+
+
+def caption_file(name):
+    """The file that says what to see in the figure or table `name`."""
+    return os.path.relpath(f"{workflow.basedir}/workflow/report/{name}.rst")
+
+
+def caption(name):
+    """What to see in the figure or table `name`."""
+    return Path(caption_file(name)).read_text(encoding="utf-8")

@@ -3,30 +3,18 @@
 from flexsurr.report.catalogue import FIGURES, TABLES
 
 
-def caption_file(name):
-    """The file that says what to see in the figure or table `name`."""
-    return os.path.relpath(f"{workflow.basedir}/workflow/report/{name}.rst")
-
-
-def caption(name):
-    """What to see in the figure or table `name`."""
-    return Path(caption_file(name)).read_text(encoding="utf-8")
-
-
 rule draw:
     input:
-        lambda w: expand(
-            f"{RESULTS}/{{file}}", file=plan.read_by(w.study, FIGURES[w.figure])
-        ),
+        lambda w: needed(plan.read_by(w.study, FIGURES[w.figure])),
     output:
-        report(
+        svg=report(
             f"{RESULTS}/figures/{{study}}/{{figure}}.svg",
             caption="../report/product.rst",
             category="{study}",
             subcategory="figures",
             labels=lambda w: {"figure": w.figure, "shows": FIGURES[w.figure].title},
         ),
-        f"{RESULTS}/figures/{{study}}/{{figure}}.png",
+        png=f"{RESULTS}/figures/{{study}}/{{figure}}.png",
     log:
         f"{RESULTS}/logs/draw/{{study}}-{{figure}}.log",
     benchmark:
@@ -39,28 +27,27 @@ rule draw:
         job=job("draw", "study", "figure"),
         code=code("draw"),
         caption=lambda w: caption(w.figure),
+        results=lambda w: RESULTS,
     message:
         "drawing {wildcards.figure} of {wildcards.study}"
     shell:
-        "python -m flexsurr draw --job {params.job:q} --results {RESULTS:q} --output {output[0]:q}"
+        "python -m flexsurr draw --job {params.job:q} --results {params.results:q} --output {output.svg:q}"
         " > {log:q} 2>&1"
 
 
 rule tabulate:
     input:
-        lambda w: expand(
-            f"{RESULTS}/{{file}}", file=plan.read_by(w.study, TABLES[w.table])
-        ),
+        lambda w: needed(plan.read_by(w.study, TABLES[w.table])),
         caption=lambda w: caption_file(w.table),
     output:
-        report(
+        html=report(
             f"{RESULTS}/tables/{{study}}/{{table}}.html",
             caption="../report/product.rst",
             category="{study}",
             subcategory="tables",
             labels=lambda w: {"table": w.table, "shows": TABLES[w.table].title},
         ),
-        f"{RESULTS}/tables/{{study}}/{{table}}.csv",
+        csv=f"{RESULTS}/tables/{{study}}/{{table}}.csv",
     log:
         f"{RESULTS}/logs/tabulate/{{study}}-{{table}}.log",
     benchmark:
@@ -73,11 +60,12 @@ rule tabulate:
         job=job("tabulate", "study", "table"),
         code=code("tabulate"),
         caption=lambda w: caption(w.table),
+        results=lambda w: RESULTS,
     message:
         "tabulating {wildcards.table} of {wildcards.study}"
     shell:
-        "python -m flexsurr tabulate --job {params.job:q} --results {RESULTS:q}"
-        " --caption {input.caption:q} --output {output[0]:q} > {log:q} 2>&1"
+        "python -m flexsurr tabulate --job {params.job:q} --results {params.results:q}"
+        " --caption {input.caption:q} --output {output.html:q} > {log:q} 2>&1"
 
 
 # The tables that any study has.
@@ -106,7 +94,7 @@ rule join:
     params:
         job=lambda w: write("join", {}),
         code=code("join"),
-        folder=f"{RESULTS}/tables",
+        folder=lambda w, output: os.path.dirname(output[0]),
     message:
         "joining the tables of all studies"
     shell:

@@ -1,0 +1,97 @@
+"""What planning a sweep costs: time, memory and jobs against its number of trials, tiny ones.
+
+    python benchmarks/planning.py             # up to 10,000 trials in batches, up to 1,000 in a job each
+    python benchmarks/planning.py 5000 1000   # so many trials and shards, in batches and in a job each
+
+It plans (`snakemake --dry-run`) the cantilever of the quick preset up to its selection and its table of
+training, in a copy of the configuration.
+"""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import yaml
+
+PROJECT = Path(__file__).resolve().parents[1]
+PARTS = ("Snakefile", "workflow", "profiles", "config", "examples")
+TARGETS = ("results/selected/cantilever.json", "results/tables/cantilever/training.html")
+VARIANTS = 2
+PRESET = "config/presets/many.yaml"
+JOB_EACH = {"trials_per_job": 1, "shards_per_job": 1}
+
+
+def sweep(trials: int) -> dict:
+    """A sweep that makes so many trials of all variants together."""
+    space = {
+        "architecture": "hnn",
+        "hidden": [[4]],
+        "activation": ["tanh"],
+        "optimiser": ["levenberg_marquardt"],
+        "epochs": [1],
+        "seed": list(range(trials // VARIANTS)),
+    }
+    return {"search": "grid", "spaces": [space]}
+
+
+def prepare(root: Path, trials: int, shards: int, batches: dict[str, int]) -> None:
+    """Write the configuration of a sweep of so many trials on datasets of so many shards."""
+    for part in PARTS:
+        source = PROJECT / part
+        (shutil.copytree if source.is_dir() else shutil.copy2)(source, root / part)
+    preset = yaml.safe_load((root / "config/presets/quick.yaml").read_text())
+    study = preset["overrides"]["cantilever"]
+    study["dataset"] |= {"trajectories": max(shards // VARIANTS, 2), "trajectories_per_shard": 1}
+    study["sweeps"]["data_free"] = None
+    (root / PRESET).write_text(yaml.safe_dump(preset | {"batches": batches, "studies": ["cantilever"]}))
+    (root / "config/sweeps/quick.yaml").write_text(yaml.safe_dump(sweep(trials)))
+
+
+def plan(root: Path) -> tuple[float, float, int]:
+    """Seconds, MB and number of jobs of a dry run in `root`."""
+    command = [sys.executable, "-m", "snakemake", "--dry-run", "--quiet", "rules", "--configfile", PRESET]
+    environment = os.environ | {"PYTHONPATH": str(PROJECT)}
+    began = time.perf_counter()
+    process = subprocess.Popen(
+        [*command, *TARGETS],
+        cwd=root,
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+    assert process.stdout is not None
+    said = process.stdout.read()
+    _, status, used = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode:
+        raise RuntimeError(said[-2000:])
+    jobs = re.search(r"^total\s+(\d+)", said, re.MULTILINE)
+    assert jobs, said[-2000:]
+    return time.perf_counter() - began, used.ru_maxrss / 1024, int(jobs[1])
+
+
+def main() -> None:
+    """Print a row for each number of trials, in batches and in a job each."""
+    if len(sys.argv) > 1:
+        trials, shards = map(int, sys.argv[1:3])
+        cases = [(trials, shards, {}), (trials, shards, JOB_EACH)]
+    else:
+        cases = [(count, 4, {}) for count in (100, 1_000, 10_000)]
+        cases += [(count, 4, JOB_EACH) for count in (100, 1_000)]
+    print(f"{'trials':>7} {'shards':>7} {'in batches':>10} {'jobs':>7} {'s':>7} {'MB':>7}")
+    for trials, shards, batches in cases:
+        with tempfile.TemporaryDirectory() as folder:
+            prepare(Path(folder), trials, shards, batches)
+            seconds, memory, jobs = plan(Path(folder))
+        batched = "no" if batches else "yes"
+        print(f"{trials:>7} {shards:>7} {batched:>10} {jobs:>7} {seconds:>7.1f} {memory:>7.0f}")
+
+
+if __name__ == "__main__":
+    main()
