@@ -34,7 +34,7 @@ def sources() -> dict[Path, str]:
     """The text of everything that can define a name."""
     of_code = [
         path
-        for folder in ("flexsurr", "workflow", "config", "benchmarks")
+        for folder in ("flexsurr", "workflow", "config", "profiles", "benchmarks")
         for path in (TOP / folder).rglob("*")
     ]
     files = [*of_code, TOP / "Makefile", TOP / "Snakefile", TOP / "pyproject.toml"]
