@@ -42,6 +42,7 @@ def make_all(
 
     What one of them raises of the types `refused` ends that one alone; StorageError names them at the end.
     """
+    expected: tuple[type[Exception], ...] = (StorageError, *refused)
     digest = code_digest(f"flexsurr.cli.{code}")
     contents = cache(lambda file: hashlib.sha256(read_bytes(results / file)).hexdigest())
     problems = []
@@ -54,7 +55,7 @@ def make_all(
         (results / item.note).unlink(missing_ok=True)
         try:
             item.make()
-        except (StorageError, *refused) as error:
+        except expected as error:
             log.error("%s: %s", item.name, error)
             problems.append(f"{item.name}: {error}")
             continue

@@ -13,8 +13,8 @@ def main(job: Job, results: Path, store: Path, output: Path) -> None:
 
     def make(trial: Job, folder: Path, trains_on: list[Path], scored_on: list[Path]) -> None:
         train(trial["train"], sorted({file.parent for file in trains_on}), store, folder)
-        files = (folder / name for name in ("fit.json", "weights.npz", "best.npz"))
-        score(trial["score"], *files, scored_on, folder / "metrics.json")
+        fit, weights, best = (folder / name for name in ("fit.json", "weights.npz", "best.npz"))
+        score(trial["score"], fit, weights, best, scored_on, folder / "metrics.json")
 
     make_all(trials_of(job, results, make), "map_trials", results, output)
 
