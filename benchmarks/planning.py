@@ -52,13 +52,14 @@ def prepare(root: Path, trials: int, shards: int, batches: dict[str, int]) -> No
     (root / "config/sweeps/quick.yaml").write_text(yaml.safe_dump(sweep(trials)))
 
 
-def plan(root: Path) -> tuple[float, float, int]:
-    """Seconds, MB and number of jobs of a dry run in `root`."""
-    command = [sys.executable, "-m", "snakemake", "--dry-run", "--quiet", "rules", "--configfile", PRESET]
+def plan(root: Path) -> tuple[float, float, float, int]:
+    """Wall and processor seconds, MB and number of jobs of a dry run in `root`."""
+    options = ["--dry-run", "--quiet", "rules", "--configfile", PRESET]
+    command = [sys.executable, "-m", "snakemake", *TARGETS, *options]
     environment = os.environ | {"PYTHONPATH": str(PROJECT)}
     began = time.perf_counter()
     process = subprocess.Popen(
-        [*command, *TARGETS],
+        command,
         cwd=root,
         env=environment,
         stdout=subprocess.PIPE,
@@ -73,7 +74,8 @@ def plan(root: Path) -> tuple[float, float, int]:
         raise RuntimeError(said[-2000:])
     jobs = re.search(r"^total\s+(\d+)", said, re.MULTILINE)
     assert jobs, said[-2000:]
-    return time.perf_counter() - began, used.ru_maxrss / 1024, int(jobs[1])
+    processor_s = used.ru_utime + used.ru_stime
+    return time.perf_counter() - began, processor_s, used.ru_maxrss / 1024, int(jobs[1])
 
 
 def main() -> None:
@@ -84,13 +86,14 @@ def main() -> None:
     else:
         cases = [(count, 4, {}) for count in (100, 1_000, 10_000)]
         cases += [(count, 4, JOB_EACH) for count in (100, 1_000)]
-    print(f"{'trials':>7} {'shards':>7} {'in batches':>10} {'jobs':>7} {'s':>7} {'MB':>7}")
+    print("trials  shards  batches    jobs  wall s  processor s      MB")
     for trials, shards, batches in cases:
         with tempfile.TemporaryDirectory() as folder:
             prepare(Path(folder), trials, shards, batches)
-            seconds, memory, jobs = plan(Path(folder))
+            wall_s, processor_s, memory, jobs = plan(Path(folder))
         batched = "no" if batches else "yes"
-        print(f"{trials:>7} {shards:>7} {batched:>10} {jobs:>7} {seconds:>7.1f} {memory:>7.0f}")
+        costs = f"{wall_s:>7.1f} {processor_s:>12.1f} {memory:>7.0f}"
+        print(f"{trials:>6} {shards:>7} {batched:>8} {jobs:>7} {costs}", flush=True)
 
 
 if __name__ == "__main__":
