@@ -22,7 +22,7 @@ help:
 	@echo
 	@echo "while editing"
 	@echo "make check        format, findings of linters, types, floors"
-	@echo "make smoke        one study of the quick preset, in results-smoke"
+	@echo "make smoke        one study, quickly, to a table and a figure, in results-smoke"
 	@echo "make test         every check and test"
 	@echo "make coverage     the quick tests, with the lines of Python that they reach"
 	@echo "make reference    docs/reference.md anew"
