@@ -42,6 +42,9 @@ LONGEST = 28
 CHARACTERS = 120
 """Of a choice in words, and of all axes side by side."""
 
+MANY = 400
+"""More lines are pixels in the SVG too, which would hold a path for each."""
+
 ERROR = "validation nmse"
 
 
@@ -106,6 +109,7 @@ def _panel(ax: Axes, settings: pd.DataFrame, metrics: pd.DataFrame) -> None:
             alpha=0.95 if finished[trial] else 0.8,
             zorder=3 + (len(order) - order[trial]) / len(order),
             solid_joinstyle="round",
+            rasterized=len(order) > MANY,
         )
     room = max(7, CHARACTERS // len(lines))
     head = 1.03 if finished.all() else WITHOUT + 0.05

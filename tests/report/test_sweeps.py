@@ -7,6 +7,7 @@ import pytest
 from flexsurr.config.sweep import FieldSweep
 from flexsurr.config.trial import settings_of
 from flexsurr.report.figures import DRAW
+from flexsurr.report.style import save
 from flexsurr.report.sweeps import sweeps
 from flexsurr.report.trial_figures import WITHOUT
 from flexsurr.report.trial_settings import in_words, settings_that_differ
@@ -122,6 +123,15 @@ def test_every_trial_is_a_line_the_best_on_top_and_thickest(spaces, draws):
     assert best.get_ydata()[-1] == min(ends) == 0.0
     assert max(ends) == 1.0
     assert len(ends) == len(metrics) - 1
+
+
+def test_a_figure_of_thousands_of_trials_is_no_larger_than_one_of_hundreds(tmp_path):
+    sizes = []
+    for draws in (450, 1000):
+        metrics = runs_of(ADAM, draws=draws).assign(validation_nmse=np.geomspace(1e-8, 1.0, draws))
+        svg, _ = save(DRAW["trials"]({"default": list(metrics["run_id"])}, metrics), tmp_path / str(draws))
+        sizes.append(svg.stat().st_size)
+    assert sizes[1] < 2 * sizes[0]
 
 
 def test_numbers_that_are_many_stand_by_their_logarithm():
