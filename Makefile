@@ -11,7 +11,7 @@ INSTALLED := $(VENV)/.installed
 export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
 export MLFLOW_DISABLE_TELEMETRY := true
 
-.PHONY: help install reproduce report smoke check test coverage audit reference docs ui benchmark browser slurm clean
+.PHONY: help install reproduce report smoke lint check test coverage audit reference docs ui benchmark browser slurm clean
 
 help:
 	@echo "make install      the environment alone, in .venv"
@@ -22,6 +22,7 @@ help:
 	@echo
 	@echo "while editing"
 	@echo "make check        format, findings of linters, types, floors"
+	@echo "make lint         what snakemake --lint finds"
 	@echo "make smoke        one study, quickly, to a table and a figure, in results-smoke"
 	@echo "make test         every check and test"
 	@echo "make coverage     the quick tests, with the lines of Python that they reach"
@@ -51,12 +52,14 @@ report: $(INSTALLED)
 # not apply; whatever else it finds ends the check, and so does an error of its own.
 NO_FINDING := Specify a conda environment or container for each rule.
 
-check: $(INSTALLED)
+lint: $(INSTALLED)
+	@found=$$(snakemake --lint 2>&1 | grep -E '^    \* |Error' | grep -vF '$(NO_FINDING)'); \
+	if test -n "$$found"; then echo "snakemake --lint:"; echo "$$found"; exit 1; fi
+
+check: $(INSTALLED) lint
 	ruff check .
 	ruff format --check .
 	snakefmt --check Snakefile workflow
-	@found=$$(snakemake --lint 2>&1 | grep -E '^    \* |Error' | grep -vF '$(NO_FINDING)'); \
-	if test -n "$$found"; then echo "snakemake --lint:"; echo "$$found"; exit 1; fi
 	mypy
 	lint-imports
 
