@@ -1,4 +1,4 @@
-"""Choose the surrogates of a study that are evaluated, and end its sweeps."""
+"""Choose the surrogates of a study that are evaluated."""
 
 import logging
 from pathlib import Path
@@ -9,7 +9,6 @@ from flexsurr.cli.runs import read_run
 from flexsurr.storage import StorageError, write_json
 from flexsurr.training import select
 from flexsurr.training.selection import select_maps
-from flexsurr.training.tracking import end_sweep, read_store
 
 log = logging.getLogger(__name__)
 
@@ -18,19 +17,16 @@ DEFAULT_SWEEP = "default"
 SAYS_WHY = "table sweeps.csv says why"
 
 
-def main(job: Job, runs: Path, store: Path, output: Path) -> None:
-    """Write the selection from the metrics of the runs below `runs` to `output`, and end the sweeps.
+def main(job: Job, runs: Path, output: Path) -> None:
+    """Write the selection from the metrics of the runs below `runs` to `output`.
 
     The best surrogate of the sweep `default` goes by the name of its architecture (`hnn`), that of
     another sweep has the sweep's name added (`hnn_paper`). Of a study of maps there is the best for each of
     the trials' labels, and StorageError where no network has finished, for none could be flown with.
     """
     selection: dict[str, dict[str, Any]] = {}
-    metrics: dict[str, dict[str, Any]] = {}
     for sweep, keys in job["sweeps"].items():
-        for key in keys:
-            metrics[key] = read_run(runs / key / "metrics.json")
-        records = [metrics[key] for key in keys]
+        records = [read_run(runs / key / "metrics.json") for key in keys]
         if job.get("maps"):
             best = select_maps(records)
             selection |= {name if sweep == DEFAULT_SWEEP else f"{name}_{sweep}": best[name] for name in best}
@@ -44,11 +40,7 @@ def main(job: Job, runs: Path, store: Path, output: Path) -> None:
     if not selection:
         log.warning("no trial of %s has finished; its %s", job["study"], SAYS_WHY)
     write_json(output, selection)
-    end_sweep(read_store(store), job["study"], metrics)
 
 
 if __name__ == "__main__":
-    command(
-        main,
-        {"runs": "the folder of all runs", "store": "the address of the store", "output": "the selection"},
-    )
+    command(main, {"runs": "the folder of all runs", "output": "the selection"})

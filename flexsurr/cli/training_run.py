@@ -10,13 +10,15 @@ from typing import Any
 
 from flexsurr.cli.alone import alone_in
 from flexsurr.cli.command import Job
+from flexsurr.cli.commit import commit
 from flexsurr.cli.frames import write_frame
 from flexsurr.config.trial import Iterative, Map, Trial, settings_of
 from flexsurr.storage import write_json
+from flexsurr.tracking.store import read_store
+from flexsurr.tracking.trial import tracked
 from flexsurr.training import Fit
 from flexsurr.training.epochs import Report
 from flexsurr.training.sweep import run_id
-from flexsurr.training.tracking import read_store, tracked
 
 log = logging.getLogger(__name__)
 
@@ -46,11 +48,9 @@ def run(job: Job, trial: Trial, task: Callable[[], Task], store: Path, folder: P
 
 
 def _run(job: Job, trial: Trial, task: Task, store: Path, folder: Path) -> None:
-    described = {**job, "dataset_sha256": task.sha256}
+    described = {**job, "dataset_sha256": task.sha256, "commit": commit()}
     write_json(folder / "parameters.json", described)
-    page_store = read_store(store)
-    shown = {"variant": job["variant"], **job["trial"], "dataset_sha256": task.sha256}
-    with tracked(page_store, job["study"], job["run_id"], shown) as page:
+    with tracked(read_store(store), described, folder) as page:
         next_s = time.monotonic()
 
         def report(epoch: int, train_loss: float, validation_loss: float, wall_s: float) -> None:
@@ -67,14 +67,12 @@ def _run(job: Job, trial: Trial, task: Task, store: Path, folder: Path) -> None:
                 next_s = time.monotonic() + PROGRESS_EVERY_S
 
         result = task.fit(report)
-        figures = _figures(job, trial, result, task.sha256)
         page.status, page.reason = result.status, result.reason
         task.save(result.surrogate, folder / "weights.npz")
         task.save(result.best, folder / "best.npz")
         write_frame(folder / "history.parquet", result.history)
-        write_json(folder / "fit.json", figures)
-        files = [folder / name for name in ("parameters.json", "weights.npz", "history.parquet")]
-        page.keep(figures, {"dataset_sha256": task.sha256}, files)
+        write_json(folder / "fit.json", _figures(job, trial, result, task.sha256))
+        page.keep()
     log.info(
         "%s after %d epochs, %.1f s%s", result.status, result.epochs, result.wall_s, _because(result.reason)
     )

@@ -4,7 +4,8 @@ The import graph is read from the sources without running them: every import of 
 followed, wherever in a file it stands. A name imported from a package leads to the module that defines
 it; the package's own `__init__` counts only where it holds more than imports, `__all__` and the names that
 its `__getattr__` imports when they are asked for, so that a new name in its list does not rerun
-everything. Within a module every character counts, comments too.
+everything. The page of runs does not count, for nothing that a command makes depends on it. Within a
+module every character counts, comments too.
 """
 
 import ast
@@ -14,6 +15,7 @@ from functools import cache
 from pathlib import Path
 
 PACKAGE = "flexsurr"
+VIEW = "flexsurr.tracking"
 ROOT = Path(__file__).resolve().parents[2]
 
 
@@ -34,7 +36,7 @@ def modules(module: str, root: Path = ROOT) -> frozenset[str]:
     waiting = [module]
     while waiting:
         name = waiting.pop()
-        if name not in found:
+        if name not in found and not f"{name}.".startswith(f"{VIEW}."):
             found.add(name)
             waiting += _needs(root, name)
     return frozenset(found)

@@ -12,7 +12,7 @@ from flexsurr.cli import accuracy, sample, score_map, select, store, train_map
 from flexsurr.config.settings import load
 from flexsurr.storage import StorageError, read_samples
 from flexsurr.surrogates.coefficient_network import load_coefficient_network
-from flexsurr.training.tracking import read_store
+from flexsurr.tracking.store import read_store
 from flexsurr.workflow.plan import Plan
 
 ROOT = Path(__file__).parents[2]
@@ -32,7 +32,7 @@ def results(tmp_path_factory) -> Path:
         train_map.main(PLAN.train(run_id), [root / run.variant], root / "mlflow" / "airliner.json", folder)
         weights = (folder / "weights.npz", folder / "best.npz")
         score_map.main(PLAN.score(run_id), folder / "fit.json", *weights, [], folder / "metrics.json")
-    choose(root / "runs", root, root / "selected.json")
+    choose(root / "runs", root / "selected.json")
     tables = (root / "accuracy.parquet", root / "errors.parquet")
     accuracy.main(PLAN.accuracy(), root / "selected.json", root / "runs", root, *tables)
     return root
@@ -42,8 +42,8 @@ def shard_path(root: Path, shard: int, name: str = "pseudo_random") -> Path:
     return root / name / f"shard-{shard:04d}.parquet"
 
 
-def choose(runs: Path, root: Path, output: Path) -> None:
-    select.main(PLAN.select(), runs, root / "mlflow" / "airliner.json", output)
+def choose(runs: Path, output: Path) -> None:
+    select.main(PLAN.select(), runs, output)
 
 
 def test_a_shard_comes_out_the_same_from_its_seed_and_number(results, tmp_path):
@@ -93,7 +93,7 @@ def test_without_a_network_that_finished_nothing_is_selected(results, tmp_path):
         (runs / run_id).mkdir(parents=True)
         (runs / run_id / "metrics.json").write_text(json.dumps(figures))
     with pytest.raises(StorageError, match="no network of airliner has finished"):
-        choose(runs, results, tmp_path / "s.json")
+        choose(runs, tmp_path / "s.json")
 
 
 def test_samples_of_another_configuration_are_refused(results, tmp_path):

@@ -54,7 +54,7 @@ class Results:
     def select(self) -> None:
         job = {"study": STUDY, "sweeps": {"default": [RUN, OTHER]}}
         output = self.root / "selected" / f"{STUDY}.json"
-        select.main(job, self.root / "runs", self.root / "mlflow/store.json", output)
+        select.main(job, self.root / "runs", output)
 
     def statics(self) -> None:
         folder = self.root / "evaluation" / STUDY

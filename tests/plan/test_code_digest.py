@@ -83,12 +83,13 @@ def test_a_missing_module_is_named(root):
     [
         ("simulate", "flexsurr.beam.compiled", "flexsurr.training"),
         ("manifest", "flexsurr.storage.manifest", "flexsurr.beam"),
-        ("train", "flexsurr.training.tracking", "flexsurr.evaluation"),
+        ("train", "flexsurr.training.fitting", "flexsurr.evaluation"),
         ("score", "flexsurr.evaluation.selection", "flexsurr.report"),
         ("select", "flexsurr.training.selection", "flexsurr.beam"),
         ("train_map", "flexsurr.training.coefficient_fit", "flexsurr.beam"),
         ("score_map", "flexsurr.cli.runs", "flexsurr.beam"),
         ("draw", "flexsurr.report.style", "flexsurr.training"),
+        ("train", "flexsurr.cli.training_run", "flexsurr.tracking"),
     ],
 )
 def test_the_commands_depend_on_what_they_use(command, needs, does_without):

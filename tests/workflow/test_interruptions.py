@@ -11,7 +11,8 @@ import pytest
 from mlflow import MlflowClient
 from project import eventually
 
-from flexsurr.training.tracking import RUN_KEY, store_uri
+from flexsurr.tracking.description import RUN_KEY
+from flexsurr.tracking.store import store_uri
 
 BEAM = "cantilever"
 TARGETS = (f"results/selected/{BEAM}.json",)

@@ -26,7 +26,8 @@ from flexsurr.config.reading import read_yaml
 from flexsurr.config.structure import Structure
 from flexsurr.report.catalogue import FIGURES, TABLES
 from flexsurr.report.pages import ROWS
-from flexsurr.training.tracking import RUN_KEY, store_uri
+from flexsurr.tracking.description import RUN_KEY
+from flexsurr.tracking.store import store_uri
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 QUIET = (

@@ -11,6 +11,15 @@ onstart:
     shell("python -m flexsurr store --job {tracked:q} --output {STORE:q}")
 
 
+# What no job could log: scores and figures. It says what the page lacks.
+onsuccess:
+    shell("python -m flexsurr track --results {RESULTS:q} || true")
+
+
+onerror:
+    shell("python -m flexsurr track --results {RESULTS:q} || true")
+
+
 rule train:
     input:
         data=lambda w: needed(plan.study_of(w.run_id).trains_on(w.run_id)),
@@ -114,9 +123,8 @@ rule select:
         job=job("select", "study"),
         code=code("select"),
         runs=f"{RESULTS}/runs",
-        store=STORE,
     message:
         "choosing the surrogates of {wildcards.study}"
     shell:
         "python -m flexsurr select --job {params.job:q} --runs {params.runs:q}"
-        " --store {params.store:q} --output {output:q} > {log:q} 2>&1"
+        " --output {output:q} > {log:q} 2>&1"

@@ -1,0 +1,160 @@
+"""`flexsurr track`: what the page lacks, it gets from the files, once."""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from mlflow import MlflowClient
+from run_folders import described, write_run, write_scores
+
+from flexsurr.cli import store, track
+from flexsurr.storage import StorageError
+from flexsurr.tracking.description import RUN_KEY
+from flexsurr.tracking.run_files import UNLOGGED
+from flexsurr.tracking.store import database, read_store, store_uri
+from flexsurr.tracking.trial import tracked
+
+AWAY = "http://127.0.0.1:9"
+
+
+@pytest.fixture(scope="module")
+def empty(tmp_path_factory) -> Path:
+    """Results with a store in which there is nothing yet."""
+    results = tmp_path_factory.mktemp("empty")
+    store.main({"uri": None, "studies": ["cantilever"]}, results / "mlflow/store.json")
+    return results
+
+
+@pytest.fixture
+def results(empty, tmp_path) -> Path:
+    """Results with a store of their own, in which there is nothing yet."""
+    return shutil.copytree(empty, tmp_path / "results")
+
+
+def train(results: Path, key: str, **fit) -> Path:
+    """A run that tells the page of itself as it trains."""
+    folder = write_run(results / "runs", key, **fit)
+    with tracked(read_store(results / "mlflow/store.json"), described(key), folder) as trial:
+        for epoch in range(3):
+            trial.epoch(epoch, 1.0 / (1 + epoch), 2.0 / (1 + epoch))
+        trial.keep()
+        trial.status, trial.reason = fit.get("status", "finished"), fit.get("reason", "")
+    return folder
+
+
+def page(results: Path) -> tuple[MlflowClient, list]:
+    """A client, and the runs of the cantilever."""
+    client = MlflowClient(store_uri(None, results / "mlflow"))
+    experiment = client.get_experiment_by_name("cantilever").experiment_id
+    return client, client.search_runs([experiment])
+
+
+def content(results: Path) -> dict[str, tuple]:
+    """What the page has of each trial, but for times and what the machine did."""
+    client, runs = page(results)
+    found = {}
+    for run in runs:
+        if RUN_KEY in run.data.tags:
+            losses = client.get_metric_history(run.info.run_id, "train_loss")
+            metrics = {name: value for name, value in run.data.metrics.items() if "system/" not in name}
+            found[run.data.tags[RUN_KEY]] = (
+                run.info.status,
+                {name: tag for name, tag in run.data.tags.items() if name != "mlflow.parentRunId"},
+                run.data.params,
+                metrics,
+                sorted((metric.step, metric.value) for metric in losses),
+                sorted(file.path for file in client.list_artifacts(run.info.run_id)),
+                [(each.dataset.name, each.dataset.digest) for each in run.inputs.dataset_inputs],
+            )
+    return found
+
+
+def test_runs_logged_from_their_files_are_as_if_they_had_told_of_themselves(results, tmp_path, empty):
+    elsewhere = shutil.copytree(empty, tmp_path / "elsewhere")
+    for key, fit in (("hnn-1", {}), ("hnn-2", {"status": "failed", "reason": "the loss is nan"})):
+        write_scores(train(results, key, **fit), long_response_error_percent_worst=0.5)
+    track.main(results, sync=False, uri=None)
+    shutil.copytree(results / "runs", elsewhere / "runs")
+    track.main(elsewhere, sync=True, uri=None)
+    assert content(elsewhere) == content(results)
+    assert content(results)["hnn-1"][3]["long_response_error_percent_worst"] == 0.5
+    assert content(results)["hnn-2"][0] == "FAILED"
+
+
+def test_what_is_there_is_not_logged_again(results):
+    train(results, "hnn-1")
+    write_run(results / "runs", "hnn-2")
+    track.main(results, sync=True, uri=None)
+    before = [run.to_dictionary() for run in page(results)[1]]
+    track.main(results, sync=True, uri=None)
+    assert [run.to_dictionary() for run in page(results)[1]] == before
+
+
+def test_a_run_trained_anew_is_logged_beside_the_old_one(results):
+    write_run(results / "runs", "hnn-1")
+    track.main(results, sync=True, uri=None)
+    write_run(results / "runs", "hnn-1", train_nmse=0.5)
+    track.main(results, sync=True, uri=None)
+    found = [run.data.metrics.get("train_nmse") for run in page(results)[1] if RUN_KEY in run.data.tags]
+    assert sorted(found) == [1e-9, 0.5]
+
+
+def test_a_store_away_while_training_is_said_and_made_up_for(results, capsys):
+    store.main({"uri": AWAY, "studies": ["cantilever"]}, results / "mlflow/store.json")
+    folder = train(results, "hnn-1")
+    assert (folder / UNLOGGED).exists()
+    track.main(results, sync=False, uri=None)
+    said = "cantilever: not logged: 1 run, scores and figures; flexsurr track --sync logs them"
+    assert said in capsys.readouterr().err
+    with pytest.raises(StorageError, match="not all of it is on the page"):
+        track.main(results, sync=True, uri=None)
+    track.main(results, sync=True, uri=store_uri(None, results / "mlflow"))
+    assert not (folder / UNLOGGED).exists()
+    assert set(content(results)) == {"hnn-1"}
+    capsys.readouterr()
+    track.main(results, sync=False, uri=None)
+    assert "not logged" not in capsys.readouterr().err
+
+
+def test_a_deleted_database_comes_back_from_the_files(results):
+    train(results, "hnn-1")
+    before = content(results)
+    database(results / "mlflow").unlink()
+    # in a process of its own, for MLflow remembers what a database has
+    command = [sys.executable, "-m", "flexsurr", "track", "--sync", "--results", str(results)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    assert "cantilever: 1 run logged from their files" in done.stderr
+    assert content(results) == before
+
+
+def test_figures_are_artefacts_of_the_parent_run(results):
+    train(results, "hnn-1")
+    figures = results / "figures/cantilever"
+    figures.mkdir(parents=True)
+    (figures / "figure_03.png").write_bytes(b"one")
+    for picture in (b"one", b"another"):
+        (figures / "figure_03.png").write_bytes(picture)
+        track.main(results, sync=False, uri=None)
+        client, _ = page(results)
+        parent = read_store(results / "mlflow/store.json").parents["cantilever"]
+        assert [file.path for file in client.list_artifacts(parent, "figures")] == ["figures/figure_03.png"]
+        assert Path(client.download_artifacts(parent, "figures/figure_03.png")).read_bytes() == picture
+
+
+def test_a_damaged_run_is_a_warning_and_the_others_are_logged(results, caplog):
+    write_run(results / "runs", "hnn-1")
+    (write_run(results / "runs", "hnn-2") / "fit.json").write_text("{")
+    track.main(results, sync=True, uri=None)
+    assert "hnn-2/fit.json: damaged" in caplog.text
+    assert set(content(results)) == {"hnn-1"}
+
+
+def test_a_study_that_the_store_does_not_know_waits_for_a_sync(results):
+    write_run(results / "runs", "hnn-1", "wing")
+    track.main(results, sync=False, uri=None)
+    assert "wing" not in read_store(results / "mlflow/store.json").experiments
+    track.main(results, sync=True, uri=None)
+    assert set(read_store(results / "mlflow/store.json").experiments) == {"cantilever", "wing"}
