@@ -37,7 +37,11 @@ Outputs
 with q̄ = ½ ρ V², S the reference area, b the span, c the reference chord.
 """
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+
+Speed = TypeVar("Speed", float, np.ndarray)
 
 MODES = 6
 CONTROLS = 6
@@ -108,3 +112,12 @@ SECOND_ORDER: tuple[tuple[int, int], ...] = (
     (BETA, BETA),
     *((angle, modal) for angle in (ALPHA, BETA) for modal in range(FIRST_ETA, len(FEATURES))),
 )
+
+
+def onset_angles(u: Speed, v: Speed, w: Speed) -> tuple[Speed, Speed, Speed]:
+    """Airspeed, and α and β [rad], of the velocity (u, v, w) through the air in body axes: as defined above.
+
+    Numbers or arrays; numba compiles it as it is.
+    """
+    airspeed = np.sqrt(u * u + v * v + w * w)
+    return airspeed, np.arctan2(w, u), np.arcsin(v / airspeed)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from flexsurr.aerodynamics.features import FEATURES
+from flexsurr.aerodynamics.features import FEATURES, onset_angles
 from flexsurr.config.feature_limits import FeatureLimits
 from flexsurr.config.flight import CONTROL_NAMES, Control, FlightCondition, FlightSettings
 from flexsurr.flight.manoeuvres import doublet, fly
@@ -98,14 +98,12 @@ def outputs(trajectory: Trajectory) -> dict[str, Array]:
     Angles and rates in degrees; the unit ends the name.
     """
     states = dict(zip(trajectory.state_names, trajectory.x.T, strict=True))
-    u, v, w = (states[name] for name in VELOCITY)
-    airspeed = np.sqrt(u * u + v * v + w * w)
+    airspeed, alpha, beta = onset_angles(*(states[name] for name in VELOCITY))
     result = {name: states[name] for name in EARTH}
     result |= {f"{name}_m_s": states[name] for name in VELOCITY}
     result |= {f"{name}_deg": np.degrees(states[name]) for name in ATTITUDE}
     result |= {f"{name}_deg_s": np.degrees(states[name]) for name in RATES}
-    result |= {"airspeed_m_s": airspeed, "alpha_deg": np.degrees(np.arctan2(w, u))}
-    result["beta_deg"] = np.degrees(np.arcsin(v / airspeed))
+    result |= {"airspeed_m_s": airspeed, "alpha_deg": np.degrees(alpha), "beta_deg": np.degrees(beta)}
     etas = [name for name in states if name.startswith("eta_") and "dot" not in name]
     return result | {name: states[name] for name in etas}
 

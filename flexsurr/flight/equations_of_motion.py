@@ -38,6 +38,7 @@ from flexsurr.aerodynamics.features import (
     ROLL,
     SIDE,
     YAW,
+    onset_angles,
 )
 from flexsurr.aerodynamics.stability_axes import reflected
 from flexsurr.aerodynamics.standard_atmosphere import density, speed_of_sound
@@ -61,6 +62,8 @@ from flexsurr.simulation.rhs import Array, implements_rhs
 
 INPUTS = len(FEATURES)
 SCRATCH = INPUTS + len(COEFFICIENTS)
+
+_onset_angles = njit(**COMPILED)(onset_angles)
 
 
 class FlexibleAircraft(NamedTuple):
@@ -95,13 +98,12 @@ class FlexibleAircraft(NamedTuple):
 def write_features(kernel, t, x, features):
     """Write the 25 inputs of the aerodynamics at time `t` [s] and state `x` (d,) into `features` (25,)."""
     k_modes = kernel.omega_squared.size
-    u, v, w = x[U], x[V], x[W]
-    airspeed = math.sqrt(u * u + v * v + w * w)
+    airspeed, alpha, beta = _onset_angles(x[U], x[V], x[W])
     over = 1.0 / airspeed
     features[MACH] = airspeed / speed_of_sound(x[ALTITUDE_M])
     features[ALTITUDE] = x[ALTITUDE_M]
-    features[ALPHA] = math.atan2(w, u)
-    features[BETA] = math.asin(v * over)
+    features[ALPHA] = alpha
+    features[BETA] = beta
     for i in range(3):
         features[RATE_P + i] = x[P + i] * over
     sign = 0.0

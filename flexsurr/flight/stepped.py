@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from flexsurr.flight.equations_of_motion import features_along, motion_with
+from flexsurr.flight.equations_of_motion import INPUTS, features_along, motion_with
 from flexsurr.flight.model import Doublet, airless
 from flexsurr.flight.trim import Trim
 from flexsurr.simulation.rhs import Array
@@ -35,7 +35,7 @@ def fly_stepped(
     t = np.linspace(0.0, duration_s, steps + 1)
     x = np.empty((steps + 1, trim.state.size))
     x[0] = trim.state
-    inputs, time = np.empty((1, 25)), np.empty(1)
+    inputs, time = np.empty((1, INPUTS)), np.empty(1)
 
     def rate(at: float, state: Array) -> Array:
         time[0] = at

@@ -5,11 +5,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from flexsurr.aerodynamics.features import onset_angles
 from flexsurr.aerodynamics.standard_atmosphere import speed_of_sound
 from flexsurr.config.flight import FlightCondition, TrimLimits
 from flexsurr.flight.equations_of_motion import FlexibleAircraft
 from flexsurr.flight.model import FlightModel
-from flexsurr.flight.states import ALTITUDE_M, PHI, RIGID_STATES, THETA, U, W
+from flexsurr.flight.states import ALTITUDE_M, PHI, RIGID_STATES, THETA, VELOCITY_IN_X, U, W
 from flexsurr.simulation.rhs import Array, evaluate
 
 _ITERATIONS = 30
@@ -47,7 +48,7 @@ class Trim:
     @property
     def alpha_rad(self) -> float:
         """Angle of attack."""
-        return float(np.arctan2(self.state[W], self.state[U]))
+        return float(onset_angles(*self.state[VELOCITY_IN_X])[1])
 
     @property
     def eta(self) -> Array:
@@ -161,7 +162,7 @@ class _Problem:
 
 def _within(limits: TrimLimits, problem: _Problem, unknowns: Array, residual: Array) -> Trim:
     state, controls, thrust = problem.state(unknowns), problem.controls(unknowns), problem.thrust(unknowns)
-    alpha = float(np.degrees(np.arctan2(state[W], state[U])))
+    alpha = float(np.degrees(onset_angles(*state[VELOCITY_IN_X])[1]))
     beyond = []
     clipped = unknowns.copy()
     checks = (
