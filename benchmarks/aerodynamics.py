@@ -23,10 +23,10 @@ from flexsurr.flight.airliner import flexible_airframe
 from flexsurr.flight.modes import free_modes
 from flexsurr.flight.stick_model import stick_model
 from flexsurr.simulation.mapping import CompiledMapping, evaluate_mapping
-from flexsurr.surrogates.coefficient_network import CoefficientNetwork, shapes_of
-from flexsurr.training.coefficient_fit import initial_weights
-from flexsurr.training.coefficient_torch import TorchCoefficients
-from flexsurr.training.structured_normal_equations import CoefficientObjective
+from flexsurr.surrogates import Intervals, NetworkMap
+from flexsurr.training.initialisation import initial_weights
+from flexsurr.training.networks import TorchMap
+from flexsurr.training.structured_normal_equations import MapObjective
 
 AIRCRAFT = Path(__file__).parents[1] / "config" / "aircraft"
 HIDDEN = 75
@@ -41,10 +41,11 @@ def caller(form: CompiledMapping, u: np.ndarray, calls: int):
     return lambda: evaluate_mapping(form.kernel, u[:calls], y, work)
 
 
-def random_network(low: np.ndarray, high: np.ndarray) -> CoefficientNetwork:
+def random_network(low: np.ndarray, high: np.ndarray) -> NetworkMap:
     ones = np.ones(len(COEFFICIENTS))
-    weights = initial_weights(len(FEATURES), HIDDEN, len(COEFFICIENTS), seed=0)
-    return CoefficientNetwork(weights, HIDDEN, "tanh", low, high, -ones, ones, FEATURES, COEFFICIENTS)
+    weights = initial_weights(len(FEATURES), HIDDEN, len(COEFFICIENTS), seed=0, spread=0.2)
+    inputs, outputs = Intervals(FEATURES, low, high), Intervals(COEFFICIENTS, -ones, ones)
+    return NetworkMap(inputs, outputs, HIDDEN, "tanh", weights)
 
 
 def show(name: str, timing: Timing, calls: int, reference_s: float) -> None:
@@ -75,7 +76,7 @@ def main() -> None:
     print(f"{len(airframe.lattice)} panels; one evaluation, of the rebuilt lattice")
     for name, timing in timings.items():
         show(name, timing, calls[name], reference_s)
-    in_torch = TorchCoefficients(network)
+    in_torch = TorchMap(network)
     python = {
         "network, NumPy": lambda: [network(u[0]) for _ in range(PYTHON_CALLS)],
         "network, torch": lambda: [in_torch(u[0]) for _ in range(PYTHON_CALLS)],
@@ -85,10 +86,9 @@ def main() -> None:
     generator = np.random.default_rng(0)
     x = generator.uniform(-1.0, 1.0, (SAMPLES, len(FEATURES)))
     y = generator.uniform(-1.0, 1.0, (SAMPLES, len(COEFFICIENTS)))
-    objective = CoefficientObjective.of(x, y, HIDDEN, "tanh")
-    count = sum(int(np.prod(shape)) for shape in shapes_of(len(FEATURES), HIDDEN, len(COEFFICIENTS)))
+    objective = MapObjective.of(x, y, HIDDEN, "tanh")
     timing = measure(lambda: objective.normal_equations(network.parameters), repeats=5, warmup=1)
-    print(f"\nnormal equations of {count} weights at {SAMPLES} samples: {timing}")
+    print(f"\nnormal equations of {network.parameter_count} weights at {SAMPLES} samples: {timing}")
 
 
 if __name__ == "__main__":

@@ -5,12 +5,11 @@ from pathlib import Path
 import pandas as pd
 
 from flexsurr.cli.command import Job, command
-from flexsurr.cli.flying import load_map
 from flexsurr.cli.frames import write_frame
 from flexsurr.storage import read_all_samples, read_json
-from flexsurr.training.coefficient_accuracy import accuracy as accuracy_of
-from flexsurr.training.coefficient_accuracy import held_out_errors
-from flexsurr.training.coefficient_data import coefficient_data
+from flexsurr.surrogates import load_map
+from flexsurr.training.map_data import accuracy as accuracy_of
+from flexsurr.training.map_data import held_out_errors, map_data
 
 
 def main(job: Job, selection: Path, runs: Path, datasets: Path, accuracy: Path, errors: Path) -> None:
@@ -21,8 +20,8 @@ def main(job: Job, selection: Path, runs: Path, datasets: Path, accuracy: Path, 
         read = job["samples"][name]
         shards = [datasets / name / f"shard-{number:04d}.parquet" for number in range(job["shards"])]
         samples = read_all_samples(shards, read["configuration"], read["samples"])
-        data = coefficient_data(samples, read["held_out"], read["seed"])
-        predicted = load_map(runs, chosen)(data.u)
+        data = map_data(samples, read["held_out"], read["seed"])
+        predicted = load_map(runs / chosen["run_id"] / "weights.npz")(data.u)
         tables.append(accuracy_of(data, predicted, label))
         if label == "network":
             write_frame(errors, held_out_errors(data, predicted))

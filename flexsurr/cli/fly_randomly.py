@@ -19,7 +19,7 @@ from flexsurr.evaluation.airliner_models import ONE_MACH, REFERENCE, Airliner, f
 from flexsurr.evaluation.timing import measuring
 from flexsurr.flight.trim import TrimNotFound, trim
 from flexsurr.simulation.mapping import CompiledMapping
-from flexsurr.training.coefficient_torch import TorchCoefficients, export_error
+from flexsurr.training.networks import TorchMap, export_error
 
 
 def main(
@@ -46,8 +46,8 @@ def main(
             plane,
             forms,
             random_flights(plane.settings, plane.limits, partial(_has_trim, plane, compiled[REFERENCE])),
-            (network.input_low, network.input_high),
-            TorchCoefficients(network),
+            (network.inputs.low, network.inputs.high),
+            TorchMap(network),
         )
     write_frame(flights, flown)
     write_frame(exceedances, left)

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 from flexsurr.cli.command import Job
 from flexsurr.config.aircraft import Aircraft
@@ -12,8 +11,7 @@ from flexsurr.config.panels import PanelCounts
 from flexsurr.evaluation.airliner_models import Airliner, airliner, lattices
 from flexsurr.simulation.mapping import CompiledMapping
 from flexsurr.storage import StorageError, read_json
-from flexsurr.surrogates.coefficient_network import CoefficientNetwork, load_coefficient_network
-from flexsurr.surrogates.coefficient_polynomial import CoefficientPolynomial, load_coefficient_polynomial
+from flexsurr.surrogates import NetworkMap, load_map
 
 
 def airliner_of(job: Job) -> Airliner:
@@ -27,7 +25,7 @@ def airliner_of(job: Job) -> Airliner:
 
 
 def forms_of(
-    job: Job, plane: Airliner, networks: Mapping[str, CoefficientNetwork], with_rebuild: bool
+    job: Job, plane: Airliner, networks: Mapping[str, NetworkMap], with_rebuild: bool
 ) -> dict[str, CompiledMapping]:
     """The lattice's forms with the samples' boundary condition, and the networks."""
     return {
@@ -36,23 +34,24 @@ def forms_of(
     }
 
 
-def load_map(runs: Path, chosen: Mapping[str, Any]) -> CoefficientNetwork | CoefficientPolynomial:
-    """The map of a selected run, whose metrics are `chosen`."""
-    load = load_coefficient_network if chosen["architecture"] == "network" else load_coefficient_polynomial
-    return load(runs / chosen["run_id"] / "weights.npz")
-
-
-def selected_networks(selection: Path, runs: Path) -> dict[str, CoefficientNetwork]:
+def selected_networks(selection: Path, runs: Path) -> dict[str, NetworkMap]:
     """The networks that `selection` names by their labels, "network" first.
 
-    Raises StorageError where it names no "network".
+    Raises StorageError where it names no "network", or a run that is none.
     """
     chosen = read_json(selection)
     if "network" not in chosen:
         raise StorageError(f"{selection}: names no network")
     labels = sorted(chosen, key=lambda label: label != "network")
     return {
-        label: load_coefficient_network(runs / chosen[label]["run_id"] / "weights.npz")
+        label: _network(runs / chosen[label]["run_id"] / "weights.npz")
         for label in labels
         if chosen[label]["architecture"] == "network"
     }
+
+
+def _network(path: Path) -> NetworkMap:
+    learned = load_map(path)
+    if not isinstance(learned, NetworkMap):
+        raise StorageError(f"{path}: a map of the kind {learned.kind!r}, expected a network")
+    return learned

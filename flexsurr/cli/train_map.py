@@ -4,12 +4,11 @@ from pathlib import Path
 
 from flexsurr.cli.command import Job, command
 from flexsurr.cli.training_run import FILES, Task, run
-from flexsurr.config.trial import Map, MapNetwork, trial_of
+from flexsurr.config.trial import Map, trial_of
 from flexsurr.storage import read_all_samples
-from flexsurr.surrogates.coefficient_network import save_coefficient_network
-from flexsurr.surrogates.coefficient_polynomial import save_coefficient_polynomial
-from flexsurr.training.coefficient_data import coefficient_data
-from flexsurr.training.coefficient_fit import fit_coefficients
+from flexsurr.surrogates import save_map
+from flexsurr.training import fit_map
+from flexsurr.training.map_data import map_data
 
 
 def main(job: Job, data: list[Path], store: Path, folder: Path) -> None:
@@ -22,9 +21,8 @@ def main(job: Job, data: list[Path], store: Path, folder: Path) -> None:
 def _task(job: Job, trial: Map, data: Path, folder: Path) -> Task:
     shards = [data / f"shard-{number:04d}.parquet" for number in range(job["shards"])]
     samples = read_all_samples(shards, job["configuration"], job["samples"])
-    dataset = coefficient_data(samples, job["held_out"], job["seed"])
-    save = save_coefficient_network if isinstance(trial, MapNetwork) else save_coefficient_polynomial
-    return Task(dataset.sha256, lambda report: fit_coefficients(trial, dataset, folder, report), save)
+    dataset = map_data(samples, job["held_out"], job["seed"])
+    return Task(dataset.sha256, lambda report: fit_map(trial, dataset, folder, report), save_map)
 
 
 if __name__ == "__main__":

@@ -20,8 +20,9 @@ from flexsurr.beam.loads import Forces
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import EvaluationSettings, Variant
 from flexsurr.simulation.rhs import Array
-from flexsurr.surrogates import LearnedMap, NetworkMap, PolynomialMap
+from flexsurr.surrogates import LearnedMap, NetworkMap, PolynomialMap, generalised_force
 from flexsurr.training import fit_network_map, fit_polynomial_map
+from flexsurr.training.map_fitting import coordinates
 
 AXES = "xyz"
 _ROUNDING = 1e-12  # generalised forces of less, beside what the load could do at most, are none
@@ -51,7 +52,7 @@ class LearnedKinematics:
     def generalised_force(self, eta: Array, load: Forces) -> Array:
         """Q̂ (k, r) at η (k, r), at a factor of 1."""
         forces = np.concatenate([load.on_centres.ravel(), load.on_tip, np.zeros(2)])
-        return self.outputs.generalised_force(eta, forces)
+        return generalised_force(self.outputs, eta, forces)
 
 
 def learn_kinematics(basis: ModalBasis, eta: Array, degree: int) -> LearnedKinematics:
@@ -62,7 +63,7 @@ def learn_kinematics(basis: ModalBasis, eta: Array, degree: int) -> LearnedKinem
     seen = np.hstack([at.centres.reshape(len(eta), -1), at.nodes[:, -1], up[:, 1:]])
     points = [*(f"centre_{i}" for i in range(1, structure.elements + 1)), "tip"]
     names = (*(f"{point}_{axis}" for point in points for axis in AXES), "tip_y_up", "tip_z_up")
-    return LearnedKinematics(structure, fit_polynomial_map(eta, seen, names, degree))
+    return LearnedKinematics(structure, fit_polynomial_map(coordinates(eta), eta, seen, names, degree))
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,9 +92,14 @@ def learn_forces(
         raise ValueError(f"{basis.structure.name}: the load moves none of the {basis.modes.shape[1]} mode(s)")
     forces, expected = (kinematics.generalised_force(at, load) for at in (eta, held_out))
     names = tuple(f"Q{k + 1}" for k in range(eta.shape[1]))
-    even, whole = (fit_polynomial_map(eta, forces, names, settings.degree, only) for only in (True, False))
+    inputs = coordinates(eta)
+    even, whole = (
+        fit_polynomial_map(inputs, eta, forces, names, settings.degree, only) for only in (True, False)
+    )
     errors = [relative_error(fitted(held_out), expected) for fitted in (even, whole)]
-    network = fit_network_map(eta, forces, names, settings.hidden, settings.activation, settings.epochs)
+    network = fit_network_map(
+        inputs, eta, forces, names, settings.hidden, settings.activation, settings.epochs
+    )
     return LearnedForces(kinematics, load, even if errors[0] <= AS_GOOD * errors[1] else whole, network)
 
 

@@ -2,18 +2,18 @@
 
 from flexsurr.surrogates.activations import ACTIVATIONS
 from flexsurr.surrogates.archive import SurrogateFileError
-from flexsurr.surrogates.compiled import CompiledSurrogate, compiled
-from flexsurr.surrogates.dissipative_hnn import DissipativeHNN
-from flexsurr.surrogates.hnn import HNN
+from flexsurr.surrogates.hnn import HNN, DissipativeHNN
 from flexsurr.surrogates.learned_load import LearnedLoad
-from flexsurr.surrogates.learned_map import LearnedMap, NetworkMap, PolynomialMap, load_map, save_map
+from flexsurr.surrogates.learned_map import Intervals, LearnedMap, generalised_force
 from flexsurr.surrogates.mlp import MLP
 from flexsurr.surrogates.network import Network
+from flexsurr.surrogates.network_map import NetworkMap
 from flexsurr.surrogates.polynomial import PolynomialHamiltonian
+from flexsurr.surrogates.polynomial_map import PolynomialMap
 from flexsurr.surrogates.port_hamiltonian import PortHamiltonian
 from flexsurr.surrogates.port_hamiltonian_network import NetworkPortHamiltonian
 from flexsurr.surrogates.port_hamiltonian_polynomial import PolynomialPortHamiltonian
-from flexsurr.surrogates.saved import load, load_model, save
+from flexsurr.surrogates.saved import load, load_map, load_model, save, save_map
 from flexsurr.surrogates.scaling import (
     FeatureScaling,
     PairScaling,
@@ -24,7 +24,7 @@ from flexsurr.surrogates.scaling import (
     min_max_scaling,
     pair_scaling,
 )
-from flexsurr.surrogates.surrogate import Hamiltonian, Surrogate
+from flexsurr.surrogates.surrogate import CompiledSurrogate, Hamiltonian, Surrogate, compiled
 
 __all__ = [
     "ACTIVATIONS",
@@ -34,6 +34,7 @@ __all__ = [
     "DissipativeHNN",
     "FeatureScaling",
     "Hamiltonian",
+    "Intervals",
     "LearnedLoad",
     "LearnedMap",
     "Network",
@@ -51,6 +52,7 @@ __all__ = [
     "canonical_scaling",
     "compiled",
     "feature_scaling",
+    "generalised_force",
     "load",
     "load_map",
     "load_model",

@@ -1,8 +1,9 @@
 """Activation functions σ with σ′ and σ″, for arrays and for compiled loops.
 
-A Hamiltonian network needs σ′ to be evaluated and σ″ to be trained. In compiled code the function is
-chosen by the class of an empty NamedTuple, when the code is compiled: no branch runs per neuron and
-the loop over neurons vectorises.
+A Hamiltonian network needs σ′ to be evaluated and σ″ to be trained. Each formula is written once, in terms
+of functions that numba knows of one number and NumPy of arrays. In compiled code it is chosen by the class
+of an empty NamedTuple, when the code is compiled: no branch runs per neuron and the loop over neurons
+vectorises.
 
     name        σ(z)                    σ′(z)                   σ″
     elu         z, z > 0; eᶻ − 1        1, z > 0; eᶻ            jumps at 0
@@ -80,130 +81,129 @@ def curvature(tag: Any, z: float) -> float:
     raise TypeError(f"{tag} is an activation of compiled code")
 
 
-def _compile(
-    tag_class: type, sigma: Callable[..., float], first: Callable[..., float], second: Callable[..., float]
-) -> None:
-    for generic, formula in ((value, sigma), (slope, first), (curvature, second)):
-        _register(generic, tag_class, formula)
+Function = Callable[..., Any]
 
 
-def _register(generic: Callable[..., float], tag_class: type, formula: Callable[..., float]) -> None:
-    @overload(generic, jit_options={"fastmath": FLOATING_POINT, "error_model": "numpy"})
+class Functions(NamedTuple):
+    """What the formulas are made of, for numbers or for arrays; `above` is max(z, 0), `below` min(z, 0)."""
+
+    exp: Function
+    log: Function
+    sqrt: Function
+    atan: Function
+    tanh: Function
+    logistic: Function
+    above: Function
+    below: Function
+
+
+def _formulas(functions: Functions) -> dict[str, tuple[Function, Function, Function]]:
+    """σ, σ′ and σ″ of every activation."""
+    exp, log, sqrt, atan, tanh, logistic, above, below = functions
+
+    def tanh_curvature(z):
+        t = tanh(z)
+        return -2.0 * t * (1.0 - t * t)
+
+    def silu_curvature(z):
+        s = logistic(z)
+        return s * (1.0 - s) * (2.0 + z * (1.0 - 2.0 * s))
+
+    return {
+        "elu": (
+            lambda z: above(z) + exp(below(z)) - 1.0,
+            lambda z: exp(below(z)),
+            lambda z: exp(below(z)) * (z < 0.0),
+        ),
+        "tanh": (
+            lambda z: tanh(z),
+            lambda z: 1.0 - tanh(z) ** 2,
+            tanh_curvature,
+        ),
+        "softplus": (
+            lambda z: above(z) + log(1.0 + exp(-abs(z))),
+            lambda z: logistic(z),
+            lambda z: logistic(z) * logistic(-z),
+        ),
+        "silu": (
+            lambda z: z * logistic(z),
+            lambda z: logistic(z) * (1.0 + z * logistic(-z)),
+            silu_curvature,
+        ),
+        "squareplus": (
+            lambda z: 0.5 * (z + sqrt(z * z + 4.0)),
+            lambda z: 0.5 + 0.5 * z / sqrt(z * z + 4.0),
+            lambda z: 2.0 / ((z * z + 4.0) * sqrt(z * z + 4.0)),
+        ),
+        "half_log": (
+            lambda z: 0.5 * log(1.0 + z * z),
+            lambda z: z / (1.0 + z * z),
+            lambda z: (2.0 / (1.0 + z * z) - 1.0) / (1.0 + z * z),
+        ),
+        "atan": (
+            lambda z: atan(z),
+            lambda z: 1.0 / (1.0 + z * z),
+            lambda z: -2.0 * z / (1.0 + z * z) / (1.0 + z * z),
+        ),
+    }
+
+
+OPTIONS = {"fastmath": FLOATING_POINT, "error_model": "numpy"}
+
+OF_NUMBERS = Functions(
+    exponential,
+    logarithm,
+    math.sqrt,
+    math.atan,
+    njit(**OPTIONS)(lambda z: 1.0 - 2.0 / (1.0 + exponential(2.0 * z))),
+    njit(**OPTIONS)(lambda z: 1.0 / (1.0 + exponential(-z))),
+    njit(**OPTIONS)(lambda z: z if z > 0.0 else 0.0),
+    njit(**OPTIONS)(lambda z: 0.0 if z > 0.0 else z),
+)
+OF_ARRAYS = Functions(
+    np.exp,
+    np.log,
+    np.sqrt,
+    np.arctan,
+    np.tanh,
+    lambda z: 0.5 + 0.5 * np.tanh(0.5 * z),  # overflows nowhere
+    lambda z: np.maximum(z, 0.0),
+    lambda z: np.minimum(z, 0.0),
+)
+
+
+TAGS: dict[str, Any] = {
+    "elu": Elu(),
+    "tanh": Tanh(),
+    "softplus": Softplus(),
+    "silu": Silu(),
+    "squareplus": Squareplus(),
+    "half_log": HalfLog(),
+    "atan": Atan(),
+}
+
+
+def _compile(generic: Function, tag_class: type, formula: Function) -> None:
+    of_number = njit(**OPTIONS)(formula)
+
+    @overload(generic, jit_options=OPTIONS)
     def resolve(tag, z):
         if isinstance(tag, types.BaseNamedTuple) and tag.instance_class is tag_class:
-            return formula
+            return lambda tag, z: of_number(z)
         return None
 
 
-@njit(fastmath=FLOATING_POINT, error_model="numpy")
-def _logistic(z):
-    return 1.0 / (1.0 + exponential(-z))
+for _name, _compiled_formulas in _formulas(OF_NUMBERS).items():
+    for _generic, _formula in zip((value, slope, curvature), _compiled_formulas, strict=True):
+        _compile(_generic, type(TAGS[_name]), _formula)
 
-
-@njit(fastmath=FLOATING_POINT, error_model="numpy")
-def _tanh(z):
-    return 1.0 - 2.0 / (1.0 + exponential(2.0 * z))
-
-
-@njit(fastmath=FLOATING_POINT, error_model="numpy")
-def _silu_curvature(z):
-    s = _logistic(z)
-    return s * (1.0 - s) * (2.0 + z * (1.0 - 2.0 * s))
-
-
-def _array_logistic(z: Array) -> Array:
-    return 0.5 + 0.5 * np.tanh(0.5 * z)  # overflows nowhere
-
-
-def _array_silu_curvature(z: Array) -> Array:
-    s = _array_logistic(z)
-    return s * (1.0 - s) * (2.0 + z * (1.0 - 2.0 * s))
-
-
-_compile(
-    Elu,
-    lambda tag, z: (z if z > 0.0 else 0.0) + exponential(0.0 if z > 0.0 else z) - 1.0,
-    lambda tag, z: exponential(0.0 if z > 0.0 else z),
-    lambda tag, z: exponential(z) if z < 0.0 else 0.0,
-)
-_compile(
-    Tanh,
-    lambda tag, z: _tanh(z),
-    lambda tag, z: 1.0 - _tanh(z) ** 2,
-    lambda tag, z: -2.0 * _tanh(z) * (1.0 - _tanh(z) ** 2),
-)
-_compile(
-    Softplus,
-    lambda tag, z: (z if z > 0.0 else 0.0) + logarithm(1.0 + exponential(-abs(z))),
-    lambda tag, z: _logistic(z),
-    lambda tag, z: _logistic(z) * (1.0 - _logistic(z)),
-)
-_compile(
-    Silu,
-    lambda tag, z: z * _logistic(z),
-    lambda tag, z: _logistic(z) * (1.0 + z * (1.0 - _logistic(z))),
-    lambda tag, z: _silu_curvature(z),
-)
-_compile(
-    Squareplus,
-    lambda tag, z: 0.5 * (z + math.sqrt(z * z + 4.0)),
-    lambda tag, z: 0.5 + 0.5 * z / math.sqrt(z * z + 4.0),
-    lambda tag, z: 2.0 / ((z * z + 4.0) * math.sqrt(z * z + 4.0)),
-)
-_compile(
-    HalfLog,
-    lambda tag, z: 0.5 * logarithm(1.0 + z * z),
-    lambda tag, z: z / (1.0 + z * z),
-    lambda tag, z: (2.0 / (1.0 + z * z) - 1.0) / (1.0 + z * z),
-)
-_compile(
-    Atan,
-    lambda tag, z: math.atan(z),
-    lambda tag, z: 1.0 / (1.0 + z * z),
-    lambda tag, z: -2.0 * z / (1.0 + z * z) / (1.0 + z * z),
-)
-
-ACTIVATIONS: dict[str, ActivationFunction] = {
-    "elu": ActivationFunction(
-        value=lambda z: np.where(z > 0.0, z, np.expm1(np.minimum(z, 0.0))),
-        slope=lambda z: np.exp(np.minimum(z, 0.0)),
-        curvature=lambda z: np.where(z < 0.0, np.exp(np.minimum(z, 0.0)), 0.0),
-        tag=Elu(),
-    ),
-    "tanh": ActivationFunction(
-        value=np.tanh,
-        slope=lambda z: 1.0 - np.tanh(z) ** 2,
-        curvature=lambda z: -2.0 * np.tanh(z) * (1.0 - np.tanh(z) ** 2),
-        tag=Tanh(),
-    ),
-    "softplus": ActivationFunction(
-        value=lambda z: np.logaddexp(0.0, z),
-        slope=_array_logistic,
-        curvature=lambda z: _array_logistic(z) * _array_logistic(-z),
-        tag=Softplus(),
-    ),
-    "silu": ActivationFunction(
-        value=lambda z: z * _array_logistic(z),
-        slope=lambda z: _array_logistic(z) * (1.0 + z * _array_logistic(-z)),
-        curvature=_array_silu_curvature,
-        tag=Silu(),
-    ),
-    "squareplus": ActivationFunction(
-        value=lambda z: 0.5 * (z + np.sqrt(z * z + 4.0)),
-        slope=lambda z: 0.5 + 0.5 * z / np.sqrt(z * z + 4.0),
-        curvature=lambda z: 2.0 / ((z * z + 4.0) * np.sqrt(z * z + 4.0)),
-        tag=Squareplus(),
-    ),
-    "half_log": ActivationFunction(
-        value=lambda z: 0.5 * np.log1p(z * z),
-        slope=lambda z: z / (1.0 + z * z),
-        curvature=lambda z: (2.0 / (1.0 + z * z) - 1.0) / (1.0 + z * z),
-        tag=HalfLog(),
-    ),
-    "atan": ActivationFunction(
-        value=np.arctan,
-        slope=lambda z: 1.0 / (1.0 + z * z),
-        curvature=lambda z: -2.0 * z / (1.0 + z * z) / (1.0 + z * z),
-        tag=Atan(),
-    ),
+ACTIVATIONS = {
+    name: ActivationFunction(*of_arrays, TAGS[name]) for name, of_arrays in _formulas(OF_ARRAYS).items()
 }
+
+
+def activation_function(name: str) -> ActivationFunction:
+    """The activation of this name. Raises ValueError where there is none."""
+    if name not in ACTIVATIONS:
+        raise ValueError(f"activation {name!r} is not one of {', '.join(ACTIVATIONS)}")
+    return ACTIVATIONS[name]

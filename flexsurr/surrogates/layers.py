@@ -1,15 +1,40 @@
-"""Fully connected layers in compiled code, forwards and back.
+"""Fully connected layers: where their weights lie in one vector, and compiled code for them, forth and back.
 
-The weights of all layers lie in one vector, as `Network` has them, and everything passed between
-layers lies in one workspace; layers are offsets into both. Offsets and counters are unsigned: numba
-lets a signed index be negative, and a loop in which it cannot rule that out does not vectorise. One
-array instead of a tuple or slices, because taking a reference to an array costs as much as a layer.
+In compiled code everything passed between layers lies in one workspace; layers are offsets into it and into
+the weights. Offsets and counters are unsigned: numba lets a signed index be negative, and a loop in which
+it cannot rule that out does not vectorise. One array instead of a tuple or slices, because taking a
+reference to an array costs as much as a layer.
 """
+
+import itertools
+import math
+from collections.abc import Sequence
 
 import numpy as np
 from numba import njit
 
-from flexsurr.simulation.rhs import FLOATING_POINT
+from flexsurr.simulation.rhs import FLOATING_POINT, Array
+
+Shapes = list[tuple[int, ...]]
+
+
+def layer_shapes(widths: Sequence[int]) -> Shapes:
+    """Weights (from, to) and biases (to,) of each layer between these `widths`, the inputs' first.
+
+    Inputs come first so that a loop over neurons runs through neighbouring numbers.
+    """
+    return [shape for n, m in itertools.pairwise(widths) for shape in ((n, m), (m,))]
+
+
+def size_of(shapes: Shapes) -> int:
+    """How many numbers arrays of these shapes hold."""
+    return sum(map(math.prod, shapes))
+
+
+def views(parameters: Array, shapes: Shapes) -> list[Array]:
+    """Views of the vector `parameters`, which holds arrays of these shapes one after the other."""
+    pieces = np.split(parameters, np.cumsum([math.prod(shape) for shape in shapes[:-1]]))
+    return [piece.reshape(shape) for piece, shape in zip(pieces, shapes, strict=True)]
 
 
 @njit(fastmath=FLOATING_POINT, error_model="numpy")

@@ -16,9 +16,9 @@ from flexsurr.simulation.history import (
     history_factor,
     history_kernel,
 )
+from flexsurr.simulation.mapping import mapping
 from flexsurr.simulation.rhs import Array, evaluate, implements_rhs, rhs
 from flexsurr.surrogates.learned_map import LearnedMap
-from flexsurr.surrogates.map_kernels import add_outputs
 
 
 class LearnedLoadKernel(NamedTuple):
@@ -34,7 +34,10 @@ def _learned_load(kernel, t, x, dx, work):
     rhs(kernel.model, t, x, dx, work)
     factor = history_factor(kernel.history, t)
     if factor != 0.0:
-        add_outputs(kernel.forces, factor, x, dx, work)
+        r = x.size // 2
+        mapping(kernel.forces, x[:r], work[:r], work[r:])
+        for i in range(r):
+            dx[r + i] += factor * work[i]
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,9 +53,10 @@ class LearnedLoad:
 
     def __post_init__(self) -> None:
         r = len(self.model.state_names) // 2
-        if (self.forces.scales.size, len(self.forces.output_names)) != (r, r):
+        inputs, outputs = len(self.forces.inputs.names), len(self.forces.output_names)
+        if (inputs, outputs) != (r, r):
             raise ValueError(
-                f"a map of {self.forces.scales.size} coordinates to {len(self.forces.output_names)} forces"
+                f"a map of {inputs} coordinates to {outputs} forces"
                 f" does not fit the states {', '.join(self.model.state_names)}"
             )
 
@@ -80,8 +84,9 @@ class LearnedLoad:
 
     @cached_property
     def _compiled(self) -> tuple[NamedTuple, int]:
-        forces, size = self.forces.kernel()
-        return LearnedLoadKernel(self.model.kernel, forces, history_kernel(self.history)), size
+        forces = self.forces.compiled()
+        kernel = LearnedLoadKernel(self.model.kernel, forces.kernel, history_kernel(self.history))
+        return kernel, len(forces.input_names) + forces.work_size
 
     @property
     def kernel(self) -> NamedTuple:

@@ -7,7 +7,7 @@ import numpy as np
 
 from flexsurr.simulation.rhs import Array, implements_rhs
 from flexsurr.surrogates.activations import value
-from flexsurr.surrogates.layers import forward, offset
+from flexsurr.surrogates.layers import Shapes, forward, layer_shapes, offset
 from flexsurr.surrogates.network import Network
 from flexsurr.surrogates.scaling import origins
 
@@ -20,9 +20,9 @@ class MLP(Network):
     paired: ClassVar[bool] = False
 
     @classmethod
-    def readout_shapes(cls, states: int, neurons: int) -> list[tuple[int, ...]]:
+    def readout_shapes(cls, states: int, neurons: int) -> Shapes:
         """Weights and biases of the outputs."""
-        return [(neurons, states), (states,)]
+        return layer_shapes((neurons, states))
 
     def scaled_field(self, x: Array) -> Array:
         """The network."""

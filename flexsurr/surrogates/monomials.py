@@ -3,9 +3,11 @@
 import itertools
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
-from flexsurr.simulation.rhs import Array
+from flexsurr.simulation.rhs import FLOATING_POINT, Array
+from flexsurr.surrogates.layers import offset
 
 Exponents = NDArray[np.int64]
 
@@ -87,6 +89,22 @@ def factors(exponents: Exponents) -> tuple[NDArray[np.int64], NDArray[np.int64]]
         else:
             raise ValueError(f"monomial {row} is no product of an earlier one and one or two variables")
     return np.array(parents, dtype=np.int64), np.array(of_factors, dtype=np.int64)
+
+
+@njit(fastmath=FLOATING_POINT, error_model="numpy", _nrt=False)
+def write_monomials(parents, of_factors, d, phi, work):
+    """The monomials of the d variables at `work`'s start, from `phi` on; `factors` says what is made of what.
+
+    Products of two variables are left after the variables.
+    """
+    place = d
+    for i in range(d):
+        for j in range(i + offset(1)):
+            work[place] = work[i] * work[j]
+            place += offset(1)
+    work[phi] = 1.0
+    for k in range(offset(parents.size)):
+        work[phi + k + offset(1)] = work[phi + parents[k]] * work[of_factors[k]]
 
 
 def _last_variable(row: tuple[int, ...]) -> int:

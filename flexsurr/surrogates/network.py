@@ -1,14 +1,12 @@
 """Fully connected networks: their widths, their activation and where each weight lies in the vector."""
 
-import math
 from abc import abstractmethod
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
-import numpy as np
-
 from flexsurr.simulation.rhs import Array
-from flexsurr.surrogates.activations import ACTIVATIONS, ActivationFunction
+from flexsurr.surrogates.activations import ActivationFunction, activation_function
+from flexsurr.surrogates.layers import Shapes, layer_shapes, size_of, views
 from flexsurr.surrogates.surrogate import Surrogate
 
 
@@ -17,8 +15,7 @@ class Network(Surrogate):
     """One network, or several of the same shape, with one or more hidden layers of the given widths.
 
     The vector of parameters holds, network by network and layer by layer, the weights (from, to) and the
-    biases (to,); then what reads the last layer out. Inputs come first so that a loop over neurons runs
-    through neighbouring numbers.
+    biases (to,); then what reads the last layer out.
     """
 
     hidden: tuple[int, ...]
@@ -31,8 +28,7 @@ class Network(Surrogate):
             raise ValueError(
                 f"a network takes one or more hidden layers of one or more neurons, not {self.hidden}"
             )
-        if self.activation not in ACTIVATIONS:
-            raise ValueError(f"activation {self.activation!r} is not one of {', '.join(ACTIVATIONS)}")
+        activation_function(self.activation)  # refuses what is none
         super().__post_init__()
 
     @property
@@ -41,15 +37,13 @@ class Network(Surrogate):
         return (len(self.state_names), *self.hidden)
 
     @classmethod
-    def shapes(cls, states: int, hidden: tuple[int, ...]) -> list[tuple[int, ...]]:
+    def shapes(cls, states: int, hidden: tuple[int, ...]) -> Shapes:
         """Shapes of the arrays in `parameters`, in their order."""
-        layers = zip((states, *hidden), hidden, strict=False)
-        network = [shape for n, m in layers for shape in ((n, m), (m,))]
-        return (network + cls.readout_shapes(states, hidden[-1])) * cls.networks
+        return (layer_shapes((states, *hidden)) + cls.readout_shapes(states, hidden[-1])) * cls.networks
 
     @classmethod
     @abstractmethod
-    def readout_shapes(cls, states: int, neurons: int) -> list[tuple[int, ...]]:
+    def readout_shapes(cls, states: int, neurons: int) -> Shapes:
         """Shapes of the arrays that read a last hidden layer of `neurons` out."""
 
     @abstractmethod
@@ -59,18 +53,16 @@ class Network(Surrogate):
     @property
     def parameter_count(self) -> int:
         """Weights and biases of all layers."""
-        return sum(map(math.prod, self.shapes(len(self.state_names), self.hidden)))
+        return size_of(self.shapes(len(self.state_names), self.hidden))
 
     @property
     def sigma(self) -> ActivationFunction:
         """The activation function."""
-        return ACTIVATIONS[self.activation]
+        return activation_function(self.activation)
 
     def arrays(self) -> list[Array]:
         """Views of the parameters in their shapes."""
-        shapes = self.shapes(len(self.state_names), self.hidden)
-        pieces = np.split(self.parameters, np.cumsum([math.prod(shape) for shape in shapes[:-1]]))
-        return [piece.reshape(shape) for piece, shape in zip(pieces, shapes, strict=True)]
+        return views(self.parameters, self.shapes(len(self.state_names), self.hidden))
 
     def network_arrays(self, number: int) -> list[Array]:
         """Those of one of the networks."""

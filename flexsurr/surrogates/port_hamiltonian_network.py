@@ -1,6 +1,5 @@
 """Port-Hamiltonian surrogate whose mass matrix is M = F + L(q) L(q)ᵀ, the entries of L from a network."""
 
-import math
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -8,8 +7,8 @@ import numpy as np
 
 from flexsurr.simulation.linear_solvers import solve_packed
 from flexsurr.simulation.rhs import Array, implements_rhs
-from flexsurr.surrogates.activations import ACTIVATIONS, ActivationFunction, slope, value
-from flexsurr.surrogates.layers import forward, offset
+from flexsurr.surrogates.activations import ActivationFunction, activation_function, slope, value
+from flexsurr.surrogates.layers import Shapes, forward, layer_shapes, offset, size_of, views
 from flexsurr.surrogates.packed import lower, pack, packed_size, symmetric
 from flexsurr.surrogates.port_hamiltonian import PortHamiltonian, springs_and_dampers
 
@@ -32,8 +31,7 @@ class NetworkPortHamiltonian(PortHamiltonian):
     def __post_init__(self) -> None:
         if len(self.hidden) != 1 or self.hidden[0] < 1:
             raise ValueError(f"a port-Hamiltonian network takes one hidden layer, not {self.hidden}")
-        if self.activation not in ACTIVATIONS:
-            raise ValueError(f"activation {self.activation!r} is not one of {', '.join(ACTIVATIONS)}")
+        activation_function(self.activation)  # refuses what is none
         if self.floor.shape != (self.packed_size,):
             raise ValueError(f"the floor of M has {self.packed_size} entries, not shape {self.floor.shape}")
         if np.min(np.linalg.eigvalsh(symmetric(self.floor, self.pairs))) <= 0.0:
@@ -41,33 +39,25 @@ class NetworkPortHamiltonian(PortHamiltonian):
         super().__post_init__()
 
     @classmethod
-    def shapes(cls, pairs: int, neurons: int, even: bool) -> list[tuple[int, ...]]:
+    def shapes(cls, pairs: int, neurons: int, even: bool) -> Shapes:
         """Shapes of the arrays in `parameters`, in their order."""
         entries = packed_size(pairs)
-        return [
-            (entries if even else pairs, neurons),
-            (neurons,),
-            (entries, neurons),
-            (entries,),
-            (entries,),
-            (entries,),
-        ]
+        layer = layer_shapes((entries if even else pairs, neurons))
+        return [*layer, (entries, neurons), (entries,), (entries,), (entries,)]
 
     @property
     def parameter_count(self) -> int:
         """Weights, biases and constant entries."""
-        return sum(map(math.prod, self.shapes(self.pairs, self.hidden[0], self.even)))
+        return size_of(self.shapes(self.pairs, self.hidden[0], self.even))
 
     @property
     def sigma(self) -> ActivationFunction:
         """The activation function."""
-        return ACTIVATIONS[self.activation]
+        return activation_function(self.activation)
 
     def arrays(self) -> list[Array]:
         """Views of the parameters in their shapes."""
-        shapes = self.shapes(self.pairs, self.hidden[0], self.even)
-        pieces = np.split(self.parameters, np.cumsum([math.prod(shape) for shape in shapes[:-1]]))
-        return [piece.reshape(shape) for piece, shape in zip(pieces, shapes, strict=True)]
+        return views(self.parameters, self.shapes(self.pairs, self.hidden[0], self.even))
 
     @property
     def scaled_stiffness(self) -> Array:

@@ -10,7 +10,13 @@ from numpy.typing import NDArray
 from flexsurr.simulation.linear_solvers import solve_packed
 from flexsurr.simulation.rhs import Array, implements_rhs
 from flexsurr.surrogates.layers import offset
-from flexsurr.surrogates.monomials import Exponents, differentiate, evaluate_monomials, factors
+from flexsurr.surrogates.monomials import (
+    Exponents,
+    differentiate,
+    evaluate_monomials,
+    factors,
+    write_monomials,
+)
 from flexsurr.surrogates.packed import lower, symmetric
 from flexsurr.surrogates.port_hamiltonian import PortHamiltonian, springs_and_dampers
 
@@ -106,10 +112,10 @@ class PolynomialPortHamiltonian(PortHamiltonian):
 
 
 class PolynomialPortHamiltonianKernel(NamedTuple):
-    """Monomials of q times `inverse_q` (r,): number k + 1 is number parents[k] times factor factors[k].
+    """Monomials of q times `inverse_q` (r,), as `write_monomials` makes them of `parents` and `factors`.
 
-    Factors are the coordinates, then their packed products. `mass` holds the coefficients of the packed M,
-    entry by entry; `stiffness` and `damping` are (r, r) row by row.
+    `mass` holds the coefficients of the packed M, entry by entry; `stiffness` and `damping` are (r, r) row by
+    row.
     """
 
     inverse_q: Array
@@ -132,15 +138,9 @@ def _polynomial_port_hamiltonian(kernel, t, x, dx, work):
     adjoint = phi + count
     matrix = adjoint + count
     rates = matrix + entries
-    place = r
     for i in range(r):
         work[i] = x[i] * inverse_q[i]
-        for j in range(i + offset(1)):
-            work[place] = work[i] * work[j]
-            place += offset(1)
-    work[phi] = 1.0
-    for k in range(count - offset(1)):
-        work[phi + k + offset(1)] = work[phi + parents[k]] * work[of_factors[k]]
+    write_monomials(parents, of_factors, r, phi, work)
     for e in range(entries):
         total = 0.0
         row = e * count

@@ -1,4 +1,4 @@
-"""Surrogates on disk: one .npz of arrays with a JSON header that says what they are."""
+"""Surrogates and maps on disk: one .npz of arrays with a JSON header that says what they are."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import asdict
@@ -9,17 +9,19 @@ import numpy as np
 
 from flexsurr.simulation.rhs import Model
 from flexsurr.surrogates.archive import Kept, read_archive, write_archive
-from flexsurr.surrogates.compiled import compiled
-from flexsurr.surrogates.dissipative_hnn import DissipativeHNN
-from flexsurr.surrogates.hnn import HNN
+from flexsurr.surrogates.hnn import HNN, DissipativeHNN
+from flexsurr.surrogates.learned_map import Intervals, LearnedMap
 from flexsurr.surrogates.mlp import MLP
+from flexsurr.surrogates.network_map import NetworkMap
 from flexsurr.surrogates.polynomial import PolynomialHamiltonian
+from flexsurr.surrogates.polynomial_map import PolynomialMap
 from flexsurr.surrogates.port_hamiltonian_network import NetworkPortHamiltonian
 from flexsurr.surrogates.port_hamiltonian_polynomial import PolynomialPortHamiltonian
 from flexsurr.surrogates.scaling import FeatureScaling, PairScaling, Scaling, StateScaling
-from flexsurr.surrogates.surrogate import Surrogate
+from flexsurr.surrogates.surrogate import Surrogate, compiled
 
 FORMAT = "flexsurr surrogate 1"
+MAP_FORMAT = "flexsurr learned map 2"
 NETWORKS = {network.architecture: network for network in (MLP, HNN, DissipativeHNN)}
 
 
@@ -111,3 +113,34 @@ def load_model(path: str | Path, implementation: Literal["numpy", "compiled"]) -
     if implementation == "compiled":
         return compiled(surrogate)
     raise ValueError(f"implementation {implementation!r} is not one of numpy, compiled")
+
+
+def save_map(learned: LearnedMap, path: str | Path) -> None:
+    """Write `learned` to `path` (.npz) whole: beside its place first, then moved there."""
+    names = {"input_names": learned.inputs.names, "output_names": learned.output_names}
+    intervals = {"input_low": learned.inputs.low, "input_high": learned.inputs.high}
+    header = {"kind": learned.kind, **names, **learned.settings()}
+    write_archive(path, MAP_FORMAT, header, learned.arrays() | intervals)
+
+
+def load_map(path: str | Path) -> LearnedMap:
+    """The map in `path`. Raises SurrogateFileError for a damaged or foreign file, OSError for none."""
+    return read_archive(path, MAP_FORMAT, "a learned map", _map)
+
+
+def _map(header: dict[str, Any], arrays: dict[str, np.ndarray]) -> LearnedMap:
+    inputs = Intervals(tuple(header["input_names"]), arrays["input_low"], arrays["input_high"])
+    names = tuple(header["output_names"])
+    if header["kind"] == PolynomialMap.kind:
+        exponents = arrays["exponents"].astype(np.int64, casting="safe")
+        return PolynomialMap(inputs, names, exponents, arrays["coefficients"])
+    if header["kind"] != NetworkMap.kind:
+        raise ValueError(f"of the kind {header['kind']!r}")
+    return NetworkMap(
+        inputs,
+        Intervals(names, arrays["output_low"], arrays["output_high"]),
+        header["hidden"],
+        header["activation"],
+        arrays["parameters"],
+        tuple((first, second) for first, second in header["products"]),
+    )

@@ -1,4 +1,4 @@
-"""What every surrogate is: a right-hand side ẋ = f(x) learned in scaled states."""
+"""What every surrogate is: a right-hand side ẋ = f(x) learned in scaled states, and its compiled form."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
@@ -6,7 +6,7 @@ from typing import Any, ClassVar, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 
-from flexsurr.simulation.rhs import Array
+from flexsurr.simulation.rhs import Array, evaluate
 from flexsurr.surrogates.scaling import StateScaling, rates_of, scaled_states
 
 
@@ -78,3 +78,45 @@ def symplectic(gradient: Array) -> Array:
     """(∂H/∂q, ∂H/∂p) -> (∂H/∂p, −∂H/∂q), both (..., 2r): Hamilton's equations."""
     r = gradient.shape[-1] // 2
     return np.concatenate([gradient[..., r:], -gradient[..., :r]], axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class CompiledSurrogate:
+    """A CompiledModel; `surrogate` is what it was made from."""
+
+    surrogate: Surrogate
+    kernel: NamedTuple
+    work_size: int
+    breakpoints: ClassVar[tuple[float, ...]] = ()
+
+    @property
+    def state_names(self) -> tuple[str, ...]:
+        """Names of the states, those of the surrogate."""
+        return self.surrogate.state_names
+
+    @property
+    def state_units(self) -> tuple[str, ...]:
+        """Units of the states, those of the surrogate."""
+        return self.surrogate.state_units
+
+    def derivative(self, t: float, x: Array) -> Array:
+        """ẋ (2r,) at the state `x` (2r,), through the compiled kernel."""
+        dx = np.empty(len(self.state_names))
+        evaluate(self.kernel, t, np.ascontiguousarray(x, dtype=np.float64), dx, np.empty(self.work_size))
+        return dx
+
+
+@dataclass(frozen=True, eq=False)
+class CompiledHamiltonian(CompiledSurrogate):
+    """The compiled form of a surrogate that knows its energy."""
+
+    def energy(self, x: Array) -> Array:
+        """H(x) − H(0), (..., 2r) -> (...), as the surrogate has it."""
+        assert isinstance(self.surrogate, Hamiltonian)
+        return self.surrogate.energy(x)
+
+
+def compiled(surrogate: Surrogate) -> CompiledSurrogate:
+    """The compiled form of `surrogate`."""
+    form = CompiledHamiltonian if isinstance(surrogate, Hamiltonian) else CompiledSurrogate
+    return form(surrogate, *surrogate.kernel())

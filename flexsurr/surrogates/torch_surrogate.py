@@ -14,8 +14,7 @@ from flexsurr.config.own_network import OwnNetwork
 from flexsurr.simulation.python_kernel import PythonEquations
 from flexsurr.simulation.rhs import Array
 from flexsurr.surrogates.program import Program
-from flexsurr.surrogates.scaled_kernel import scaled_kernel
-from flexsurr.surrogates.scaling import StateScaling, scaled_states
+from flexsurr.surrogates.scaling import StateScaling, scaled_kernel, scaled_states
 from flexsurr.surrogates.surrogate import Surrogate
 from flexsurr.surrogates.torch_module import Source, Structure, field, weights_of
 from flexsurr.surrogates.torch_program import NotExportable, program_of

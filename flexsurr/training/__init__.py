@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from flexsurr.training.dataset import Dataset, ShardedDataset, load_dataset, split_dataset
-    from flexsurr.training.fit_result import Fit
+    from flexsurr.training.epochs import Fit
     from flexsurr.training.fitting import fit
-    from flexsurr.training.learned_maps import fit_network_map, fit_polynomial_map
     from flexsurr.training.losses import nmse
+    from flexsurr.training.map_fitting import fit_map, fit_network_map, fit_polynomial_map
     from flexsurr.training.networks import torch_model
     from flexsurr.training.selection import select
     from flexsurr.training.sweep import expand, run_id
@@ -23,6 +23,7 @@ __all__ = [
     "ShardedDataset",
     "expand",
     "fit",
+    "fit_map",
     "fit_network_map",
     "fit_polynomial_map",
     "load_dataset",
@@ -35,12 +36,13 @@ __all__ = [
 
 _MODULES = {
     "Dataset": "dataset",
-    "Fit": "fit_result",
+    "Fit": "epochs",
     "ShardedDataset": "dataset",
     "expand": "sweep",
     "fit": "fitting",
-    "fit_network_map": "learned_maps",
-    "fit_polynomial_map": "learned_maps",
+    "fit_map": "map_fitting",
+    "fit_network_map": "map_fitting",
+    "fit_polynomial_map": "map_fitting",
     "load_dataset": "dataset",
     "nmse": "losses",
     "run_id": "sweep",

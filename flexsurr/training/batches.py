@@ -9,8 +9,7 @@ import numpy as np
 from numba import njit
 
 from flexsurr.simulation.rhs import FLOATING_POINT
-from flexsurr.training.backpropagation import accumulate, field
-from flexsurr.training.forward_pass import propagate
+from flexsurr.training.backpropagation import accumulate, field, propagate
 
 CACHED = {"cache": True, "fastmath": FLOATING_POINT, "error_model": "numpy"}
 

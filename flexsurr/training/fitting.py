@@ -1,6 +1,5 @@
 """One trial on one dataset, from random weights to the best ones, whichever the optimiser."""
 
-import math
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -34,18 +33,18 @@ from flexsurr.surrogates import (
 )
 from flexsurr.training.adam import Adam
 from flexsurr.training.dataset import Dataset, SampleSource
-from flexsurr.training.epochs import Limits, Loss, Report, run_epochs
-from flexsurr.training.fit_result import Fit
+from flexsurr.training.epochs import Fit, Limits, Loss, Optimiser, Progress, Report, run_epochs
 from flexsurr.training.initialisation import initial_parameters
 from flexsurr.training.inverse_dynamics import NotPositiveDefinite, fit_port_hamiltonian
 from flexsurr.training.least_squares import fit_polynomial
-from flexsurr.training.levenberg_marquardt import LevenbergMarquardt
+from flexsurr.training.levenberg_marquardt import second_order
 from flexsurr.training.losses import FieldErrors
 from flexsurr.training.objective import Objective
-from flexsurr.training.optimiser import Optimiser
-from flexsurr.training.port_hamiltonian_objective import PortHamiltonianObjective
-from flexsurr.training.port_hamiltonian_training import InverseThenForward, untrained_port_hamiltonian
-from flexsurr.training.progress import Progress
+from flexsurr.training.port_hamiltonian_training import (
+    InverseThenForward,
+    PortHamiltonianObjective,
+    untrained_port_hamiltonian,
+)
 
 NETWORKS: dict[str, type[Network]] = {form.architecture: form for form in (HNN, MLP, DissipativeHNN)}
 SCALINGS: dict[str, Callable[[Scales], StateScaling]] = {
@@ -93,17 +92,12 @@ def fit(trial: Trial, source: SampleSource, folder: str | Path, report: Report |
         best=best,
         status=ending.status,
         reason=ending.reason,
-        epochs=progress.epoch,
-        best_epoch=progress.best_epoch,
-        wall_s=progress.wall_s,
-        processor_s=progress.processor_s,
-        final_loss=progress.final_loss,
         train_nmse=training.loss(network.parameters),
         validation_nmse=validation.loss(network.parameters),
         best_validation_nmse=progress.best_loss,
         parameters=network.parameter_count,
-        history=progress.history(),
         validation_nmse_per_state=tuple(errors.nmse_per_state().tolist()),
+        **progress.figures(),
     )
 
 
@@ -153,11 +147,7 @@ def _optimiser(trial: Iterative, objective: Objective) -> Optimiser:
             precision=trial.precision,
             seed=trial.seed,
         )
-    if trial.optimiser == "lbfgs":
-        from flexsurr.training.lbfgs import LBFGS  # here, for it imports torch
-
-        return LBFGS(objective, parameters)
-    return LevenbergMarquardt(objective, parameters)
+    return second_order(trial.optimiser, objective, parameters)
 
 
 def _fit_linear(trial: FieldPolynomial, source: SampleSource, report: Report | None) -> Fit:
@@ -174,25 +164,17 @@ def _fit_linear(trial: FieldPolynomial, source: SampleSource, report: Report | N
     training = FieldErrors.over(surrogate, source.training_blocks())
     validation = FieldErrors.over(surrogate, source.validation_blocks())
     losses = training.nmse(), validation.nmse()
-    progress = Progress(math.inf, surrogate.parameters)
     spent_s, processor_s = time.perf_counter() - start, time.process_time() - processor_start
-    progress.add(spent_s, *losses, surrogate.parameters, processor_s)
-    if report is not None:
-        report(1, *losses, progress.wall_s)
+    progress = Progress.at_once(spent_s, losses, surrogate.parameters, processor_s, report)
     return Fit(
         surrogate=surrogate,
         best=surrogate,
         status="failed" if reason else "finished",
         reason=reason,
-        epochs=1,
-        best_epoch=1,
-        wall_s=progress.wall_s,
-        processor_s=progress.processor_s,
-        final_loss=losses[0],
         train_nmse=losses[0],
         validation_nmse=losses[1],
         best_validation_nmse=losses[1],
         parameters=surrogate.parameter_count,
-        history=progress.history(),
         validation_nmse_per_state=tuple(validation.nmse_per_state().tolist()),
+        **progress.figures(),
     )

@@ -7,6 +7,7 @@ import numpy as np
 
 from flexsurr.simulation.rhs import Array
 from flexsurr.surrogates import Network
+from flexsurr.surrogates.layers import layer_shapes, views
 
 WIDE = 2.0
 
@@ -36,3 +37,17 @@ def initial_parameters(
             piece = WIDE * generator.uniform(-1.0, 1.0, shape)
         pieces.append(piece.ravel())
     return np.concatenate(pieces)
+
+
+def initial_weights(inputs: int, hidden: int, outputs: int, seed: int, spread: float) -> Array:
+    """Weights for a map of one hidden layer: normal ones of the deviation `spread`, and uniform biases.
+
+    The outputs read the neurons by small weights, without biases.
+    """
+    generator = np.random.default_rng(seed)
+    parameters = np.zeros((inputs + 1) * hidden + (hidden + 1) * outputs)
+    weights, biases, weights_out, _ = views(parameters, layer_shapes((inputs, hidden, outputs)))
+    weights[:] = generator.standard_normal(weights.shape) * spread
+    biases[:] = generator.uniform(-1.0, 1.0, biases.shape)
+    weights_out[:] = generator.uniform(-1.0, 1.0, weights_out.shape) / math.sqrt(hidden)
+    return parameters

@@ -3,20 +3,50 @@
 The damping μ follows the gain ratio (H. B. Nielsen, *Damping parameter in Marquardt's method*,
 IMM-REP-1999-05, eq. 2.11); it is scaled by the largest diagonal of JᵀJ met so far (Moré 1978), so that
 the steps don't depend on the units of single weights. A step that does not lessen the loss is repeated
-with more damping from the same JᵀJ.
+with more damping from the same JᵀJ, which is accumulated so that memory does not grow with the samples.
 """
 
-from typing import Protocol
+from collections.abc import Callable
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
 from flexsurr.simulation.rhs import Array
-from flexsurr.training.normal_equations import NormalEquations
+from flexsurr.training.epochs import Optimiser
 
+Rows = Callable[[slice, Array, Array], None]
+"""Fills residuals and Jacobian of a slice of the samples; both may be longer than the slice asks for."""
 INITIAL_DAMPING = 1e-2
 LARGEST_DAMPING = 1e12
 SMALLEST_DAMPING = 1e-15
+
+
+class NormalEquations(NamedTuple):
+    """JᵀJ (n, n) and Jᵀr (n,) of residuals r whose sum of squares is the loss."""
+
+    loss: float
+    gram: Array
+    gradient: Array
+
+
+def accumulated(rows: Rows, shape: tuple[int, ...], unknowns: int, chunk: int) -> NormalEquations:
+    """Of `shape` = (m, d) residuals, d for each sample; at most `chunk` elements of the Jacobian at a time.
+
+    Of the Jacobian there is at least one sample's part.
+    """
+    samples, d = shape
+    step = min(max(chunk // (unknowns * d), 1), samples)
+    jacobian, residuals = np.empty((step * d, unknowns)), np.empty(step * d)
+    loss, gram, gradient = 0.0, np.zeros((unknowns, unknowns)), np.zeros(unknowns)
+    for first in range(0, samples, step):
+        part = slice(first, first + step)
+        rows(part, residuals, jacobian)
+        filled = d * (min(first + step, samples) - first)
+        loss += float(residuals[:filled] @ residuals[:filled])
+        gram += jacobian[:filled].T @ jacobian[:filled]
+        gradient += jacobian[:filled].T @ residuals[:filled]
+    return NormalEquations(loss, gram, gradient)
 
 
 class SumOfSquares(Protocol):
@@ -29,6 +59,23 @@ class SumOfSquares(Protocol):
     def normal_equations(self, parameters: Array) -> NormalEquations:
         """JᵀJ, Jᵀr and the sum of squares."""
         ...
+
+
+class Smooth(SumOfSquares, Protocol):
+    """A sum of squares with a gradient of its own, cheaper than JᵀJ."""
+
+    def gradient(self, parameters: Array, gradient: Array) -> float:
+        """The sum of squares, its gradient written into `gradient`."""
+        ...
+
+
+def second_order(name: str, objective: Smooth, parameters: Array) -> Optimiser:
+    """The optimiser `name` from weights `parameters`: lbfgs or levenberg_marquardt."""
+    if name == "lbfgs":
+        from flexsurr.training.lbfgs import LBFGS  # here, for it imports torch
+
+        return LBFGS(objective, parameters)
+    return LevenbergMarquardt(objective, parameters)
 
 
 class LevenbergMarquardt:

@@ -1,4 +1,4 @@
-"""The same networks as torch modules: what the study's own networks are, and run through autograd."""
+"""The same networks and maps as torch modules: what the study's own are, before export to compiled code."""
 
 import itertools
 from collections.abc import Callable
@@ -10,8 +10,8 @@ import torch
 from torch import Tensor, nn
 
 from flexsurr.simulation.rhs import Array
-from flexsurr.surrogates import Network
-from flexsurr.surrogates.scalar_networks import ScalarNetworks
+from flexsurr.surrogates import Network, NetworkMap
+from flexsurr.surrogates.hnn import ScalarNetworks
 from flexsurr.surrogates.scaling import rates_of, scaled_states
 from flexsurr.surrogates.torch_module import field
 
@@ -108,3 +108,41 @@ class TorchModel:
 def torch_model(surrogate: Network, dtype: torch.dtype = torch.float64) -> TorchModel:
     """`surrogate` as the study's networks run: by torch, with autograd at every right-hand side."""
     return TorchModel(surrogate, to_torch(surrogate, dtype).eval())
+
+
+class TorchMap:
+    """A network map as its training leaves it: a torch module in double precision, called with arrays."""
+
+    def __init__(self, learned: NetworkMap) -> None:
+        weights, *_, biases_out = layers = learned.layers()
+        self.module = Dense(weights.shape[:2], biases_out.size, True, learned.activation).double().eval()
+        with torch.no_grad():
+            for parameter, array in zip(self.module.parameters(), layers, strict=True):
+                parameter.copy_(torch.from_numpy(array.T.copy()))
+        self._products = torch.tensor(learned.products, dtype=torch.int64).reshape(-1, 2).T
+        self._origin, self._half, self._output_origin, self._output_half = (
+            torch.from_numpy(array)
+            for intervals in (learned.inputs, learned.outputs)
+            for array in (intervals.origin, intervals.half)
+        )
+
+    @torch.no_grad()
+    def __call__(self, u: Array) -> Array:
+        """Outputs (..., k) at inputs `u` (..., n), both in their units."""
+        x = (torch.from_numpy(u) - self._origin) / self._half
+        if self._products.numel():
+            first, second = self._products
+            x = torch.cat([x, x[..., first] * x[..., second]], dim=-1)
+        return np.asarray((self._output_origin + self._output_half * self.module(x)).numpy())
+
+
+def export_error(learned: NetworkMap, count: int = 1000, seed: int = 0) -> float:
+    """Largest difference of the compiled map from torch's, over each output's interval.
+
+    At `count` random inputs within the limits of training: what the export costs in accuracy.
+    """
+    inputs, outputs = learned.inputs, learned.outputs
+    unit = np.random.default_rng(seed).uniform(size=(count, len(inputs.names)))
+    u = inputs.low + (inputs.high - inputs.low) * unit
+    difference = np.abs(learned.compiled()(u) - TorchMap(learned)(u))
+    return float((difference / (outputs.high - outputs.low)).max())

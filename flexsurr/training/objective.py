@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from flexsurr.simulation.rhs import Array
 from flexsurr.surrogates import Network
 from flexsurr.surrogates.scaling import scaled_rates, scaled_states
+from flexsurr.training.backpropagation import workspace
 from flexsurr.training.batches import fields, loss_and_gradient, residuals_and_jacobian
-from flexsurr.training.forward_pass import workspace
+from flexsurr.training.levenberg_marquardt import NormalEquations, accumulated
 from flexsurr.training.losses import output_weights
-from flexsurr.training.normal_equations import NormalEquations, accumulated
 
 Minimised = Literal["nmse", "mean_square", "norms"]
 

@@ -14,7 +14,6 @@ so that, summed over samples and over outputs of weights w_o,
 The Jacobian of 12 outputs would have 12 times the rows, and its square 12 times the work.
 """
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -23,13 +22,13 @@ from numpy.typing import NDArray
 
 from flexsurr.simulation.rhs import Array
 from flexsurr.surrogates.activations import ACTIVATIONS
-from flexsurr.surrogates.coefficient_network import shapes_of
+from flexsurr.surrogates.layers import layer_shapes, views
+from flexsurr.training.levenberg_marquardt import NormalEquations
 from flexsurr.training.losses import output_weights
-from flexsurr.training.normal_equations import NormalEquations
 
 
 @dataclass(frozen=True, eq=False)
-class CoefficientObjective:
+class MapObjective:
     """The nmse of a network of one hidden layer at scaled inputs `x` (m, n) and outputs `y` (m, k).
 
     `weights` (k,) are those of the outputs' mean squared errors. Satisfies `SumOfSquares`.
@@ -44,7 +43,7 @@ class CoefficientObjective:
     @classmethod
     def of(
         cls, x: Array, y: Array, hidden: int, activation: str, weights: Array | None = None
-    ) -> "CoefficientObjective":
+    ) -> "MapObjective":
         """The objective for scaled samples; `weights` by the variance of `y` unless given."""
         return cls(x, y, hidden, activation, output_weights(y) if weights is None else weights)
 
@@ -71,9 +70,7 @@ class CoefficientObjective:
 
     def unpacked(self, parameters: Array) -> list[Array]:
         """Views of the parameters: hidden weights and biases, then the output's."""
-        shapes = shapes_of(self.x.shape[1], self.hidden, self.y.shape[1])
-        pieces = np.split(parameters, np.cumsum([math.prod(shape) for shape in shapes[:-1]]))
-        return [piece.reshape(shape) for piece, shape in zip(pieces, shapes, strict=True)]
+        return views(parameters, layer_shapes((self.x.shape[1], self.hidden, self.y.shape[1])))
 
     def gradient(self, parameters: Array, gradient: Array) -> float:
         """The loss, its gradient written into `gradient` (parameters,)."""

@@ -11,7 +11,7 @@ from flexsurr.aerodynamics.features import COEFFICIENTS
 from flexsurr.cli import accuracy, sample, score_map, select, store, train_map
 from flexsurr.config.settings import load
 from flexsurr.storage import StorageError, read_samples
-from flexsurr.surrogates.coefficient_network import load_coefficient_network
+from flexsurr.surrogates import load_map
 from flexsurr.tracking.store import read_store
 from flexsurr.workflow.plan import Plan
 
@@ -68,7 +68,7 @@ def test_the_table_has_each_coefficient_once_for_each_model(results):
 def test_the_selected_network_is_the_one_that_was_tabulated(results):
     chosen = json.loads((results / "selected.json").read_text())["network"]
     folder = results / "runs" / chosen["run_id"]
-    network = load_coefficient_network(folder / "weights.npz")
+    network = load_map(folder / "weights.npz")
     samples = read_samples(shard_path(results, 0))
     assert network(samples.u).shape == samples.y.shape
     errors = pd.read_parquet(results / "errors.parquet")

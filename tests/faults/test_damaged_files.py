@@ -16,7 +16,7 @@ from flexsurr.cli.frames import read_frame
 from flexsurr.cli.selected import selected_surrogates
 from flexsurr.storage import DamagedFile
 from flexsurr.surrogates import load
-from flexsurr.training.checkpoint import write_checkpoint
+from flexsurr.training.epochs import write_checkpoint
 from flexsurr.workflow.job_files import write_job
 
 

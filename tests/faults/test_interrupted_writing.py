@@ -15,7 +15,7 @@ from small_results import OTHER, Results
 from flexsurr.cli.frames import write_frame
 from flexsurr.storage import write_json
 from flexsurr.surrogates import load, save
-from flexsurr.training.checkpoint import NAME, write_checkpoint
+from flexsurr.training.epochs import CHECKPOINT, write_checkpoint
 
 LARGE = np.random.default_rng(0).normal(size=4096)
 FITS = 512  # bytes, and every file here is larger
@@ -31,7 +31,7 @@ WRITERS: dict[str, tuple[str, Callable[[Results, Path], None]]] = {
     "table": ("cost.parquet", lambda results, path: write_frame(path, pd.DataFrame({"x": LARGE}))),
     "keys": ("metrics.json", lambda results, path: write_json(path, {"x": LARGE.tolist()})),
     "weights": ("weights.npz", weights),
-    "checkpoint": (NAME, lambda results, path: write_checkpoint(path.parent, {}, state={"x": LARGE})),
+    "checkpoint": (CHECKPOINT, lambda results, path: write_checkpoint(path.parent, {}, state={"x": LARGE})),
 }
 
 

@@ -86,7 +86,7 @@ def test_a_missing_module_is_named(root):
         ("train", "flexsurr.training.fitting", "flexsurr.evaluation"),
         ("score", "flexsurr.evaluation.selection", "flexsurr.report"),
         ("select", "flexsurr.training.selection", "flexsurr.beam"),
-        ("train_map", "flexsurr.training.coefficient_fit", "flexsurr.beam"),
+        ("train_map", "flexsurr.training.map_fitting", "flexsurr.beam"),
         ("score_map", "flexsurr.cli.runs", "flexsurr.beam"),
         ("draw", "flexsurr.report.style", "flexsurr.training"),
         ("train", "flexsurr.cli.training_run", "flexsurr.tracking"),

@@ -10,7 +10,7 @@ from oscillator import free_responses
 from flexsurr.config.trial import GiveUp, trial_of
 from flexsurr.surrogates import load, save
 from flexsurr.training import fit, nmse
-from flexsurr.training.checkpoint import NAME
+from flexsurr.training.epochs import CHECKPOINT
 
 DATASET = free_responses()
 COMMON = {"hidden": (6,), "activation": "softplus"}
@@ -81,7 +81,7 @@ def test_a_checkpoint_of_something_else_is_not_used(other, tmp_path, monkeypatch
     monkeypatch.setattr("flexsurr.training.epochs.CHECKPOINT_EVERY_S", 0.0)
     with pytest.raises(Killed):
         fit(LM, DATASET, tmp_path, kill_at(5))
-    trial, dataset, path = LM, DATASET, tmp_path / NAME
+    trial, dataset, path = LM, DATASET, tmp_path / CHECKPOINT
     if other == "seed":
         trial = LM.model_copy(update={"seed": 1})
     elif other == "dataset":

@@ -5,7 +5,7 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from flexsurr.training.normal_equations import accumulated
+from flexsurr.training.levenberg_marquardt import accumulated
 
 SAMPLES, D, UNKNOWNS = 101, 3, 7
 

@@ -20,9 +20,14 @@ from flexsurr.training import fit, nmse, split_dataset
 from flexsurr.training.adam import Adam
 from flexsurr.training.networks import from_torch, to_torch
 from flexsurr.training.objective import Objective
-from flexsurr.training.torch_adam import TorchAdam
-from flexsurr.training.torch_objective import TorchObjective, device_of
-from flexsurr.training.torch_training import objective_of, source_of, untrained
+from flexsurr.training.torch_training import (
+    TorchAdam,
+    TorchObjective,
+    device_of,
+    objective_of,
+    source_of,
+    untrained,
+)
 
 MODELS = Path(__file__).with_name("own_models.py")
 FILE = "models/own_models.py"
@@ -134,7 +139,7 @@ def test_losses_are_made_piece_by_piece(monkeypatch):
     _, torchs = objectives("hnn", (5,), DATASET)
     whole, found = np.empty((2, torchs.parameters.size))
     losses = torchs.loss(torchs.parameters), torchs.gradient(torchs.parameters, whole)
-    monkeypatch.setattr("flexsurr.training.torch_objective.PIECE", 7)
+    monkeypatch.setattr("flexsurr.training.torch_training.PIECE", 7)
     assert torchs.loss(torchs.parameters) == pytest.approx(losses[0], rel=1e-12)
     assert torchs.gradient(torchs.parameters, found) == pytest.approx(losses[1], rel=1e-12)
     np.testing.assert_allclose(found, whole, rtol=1e-10, atol=1e-14)

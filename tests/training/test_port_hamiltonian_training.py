@@ -9,8 +9,7 @@ from flexsurr.config.trial import trial_of
 from flexsurr.surrogates import PairScaling, PolynomialPortHamiltonian, load, save
 from flexsurr.training import fit, nmse, split_dataset
 from flexsurr.training.inverse_dynamics import channel_spread
-from flexsurr.training.port_hamiltonian_objective import PortHamiltonianObjective
-from flexsurr.training.port_hamiltonian_training import untrained_port_hamiltonian
+from flexsurr.training.port_hamiltonian_training import PortHamiltonianObjective, untrained_port_hamiltonian
 
 NAMES = ("eta_1", "eta_2", "p_1", "p_2")
 TRIAL = trial_of(architecture="port_hamiltonian", hidden=(6,), activation="atan", epochs=70)
@@ -70,7 +69,7 @@ def test_normal_equations(dataset, forward, monkeypatch):
     objective = objective_of(dataset, forward)
     assert objective.network.even == (dataset is EVEN)
     parameters = objective.network.parameters
-    monkeypatch.setattr("flexsurr.training.port_hamiltonian_objective.CHUNK", 28 * parameters.size)
+    monkeypatch.setattr("flexsurr.training.port_hamiltonian_training.CHUNK", 28 * parameters.size)
     columns = []
     for e in np.eye(parameters.size):
         d = [

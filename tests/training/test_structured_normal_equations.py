@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flexsurr.training.levenberg_marquardt import LevenbergMarquardt
-from flexsurr.training.structured_normal_equations import CoefficientObjective
+from flexsurr.training.structured_normal_equations import MapObjective
 
 
 def problem(seed, samples, inputs, hidden, outputs, activation="tanh"):
@@ -15,7 +15,7 @@ def problem(seed, samples, inputs, hidden, outputs, activation="tanh"):
     x = generator.uniform(-1.0, 1.0, (samples, inputs))
     y = generator.uniform(-1.0, 1.0, (samples, outputs)) * generator.uniform(0.1, 3.0, outputs)
     count = (inputs + 1) * hidden + (hidden + 1) * outputs
-    objective = CoefficientObjective.of(x, y, hidden, activation)
+    objective = MapObjective.of(x, y, hidden, activation)
     return objective, generator.standard_normal(count)
 
 
@@ -64,7 +64,7 @@ def test_the_loss_is_the_nmse_averaged_over_outputs():
 def test_levenberg_marquardt_finds_a_network_of_the_same_size():
     objective, start = problem(2, 200, 3, 5, 2)
     truth = np.random.default_rng(3).standard_normal(start.size)
-    reachable = CoefficientObjective.of(objective.x, objective.residuals(truth) + objective.y, 5, "tanh")
+    reachable = MapObjective.of(objective.x, objective.residuals(truth) + objective.y, 5, "tanh")
     optimiser = LevenbergMarquardt(reachable, start)
     losses = [optimiser.epoch() for _ in range(120)]
     assert np.all(np.diff(losses) <= 0.0)

@@ -1,4 +1,4 @@
-"""From samples to a network of coefficients and its baselines."""
+"""From samples to a map, and how well it does."""
 
 import dataclasses
 
@@ -14,14 +14,10 @@ from flexsurr.aerodynamics.features import (
 )
 from flexsurr.config.trial import GiveUp, trial_of
 from flexsurr.storage import SampleMetadata, Samples
-from flexsurr.surrogates.coefficient_polynomial import (
-    load_coefficient_polynomial,
-    save_coefficient_polynomial,
-)
-from flexsurr.training.coefficient_accuracy import accuracy, held_out_errors
-from flexsurr.training.coefficient_data import coefficient_data
-from flexsurr.training.coefficient_fit import fit_coefficient_polynomial, fit_coefficients
+from flexsurr.surrogates import load_map, save_map
+from flexsurr.training import fit_map, fit_polynomial_map
 from flexsurr.training.epochs import Ending
+from flexsurr.training.map_data import accuracy, held_out_errors, map_data
 
 LOW, HIGH = np.array([-2.0, 0.0, 100.0]), np.array([1.0, 0.5, 300.0])
 
@@ -47,7 +43,7 @@ def quadratic_samples(count: int = 300) -> Samples:
     return Samples(u, y, metadata)
 
 
-DATA = coefficient_data(quadratic_samples(), held_out=0.2, seed=1)
+DATA = map_data(quadratic_samples(), held_out=0.2, seed=1)
 TRIAL = trial_of(architecture="network", hidden=(8,), activation="tanh", epochs=30)
 
 
@@ -56,22 +52,25 @@ def test_a_fifth_is_held_out_and_features_are_scaled_to_one():
     assert np.abs(DATA.scaled_u).max() <= 1.0
     training = DATA.scaled_y[~DATA.held_out]
     np.testing.assert_allclose([training.min(axis=0), training.max(axis=0)], [[-1.0, -1.0], [1.0, 1.0]])
-    again = coefficient_data(quadratic_samples(), held_out=0.2, seed=1)
+    again = map_data(quadratic_samples(), held_out=0.2, seed=1)
     np.testing.assert_array_equal(again.held_out, DATA.held_out)
     assert again.sha256 == DATA.sha256
-    assert coefficient_data(quadratic_samples(), held_out=0.2, seed=2).sha256 != DATA.sha256
+    assert map_data(quadratic_samples(), held_out=0.2, seed=2).sha256 != DATA.sha256
 
 
 def test_a_coefficient_that_does_not_vary_is_named():
     samples = quadratic_samples()
     flat = dataclasses.replace(samples, y=np.column_stack([samples.y[:, 0], np.ones(len(samples.y))]))
     with pytest.raises(ValueError, match="y2 does not vary"):
-        coefficient_data(flat, 0.2, 1)
+        map_data(flat, 0.2, 1)
 
 
 def test_the_quadratic_baseline_is_exact_for_a_quadratic_function():
-    quadratic = accuracy(DATA, fit_coefficient_polynomial(DATA, 2)(DATA.u), "quadratic")
-    linear = accuracy(DATA, fit_coefficient_polynomial(DATA, 1)(DATA.u), "linear")
+    training = DATA.u[~DATA.held_out], DATA.y[~DATA.held_out]
+    quadratic, linear = (
+        accuracy(DATA, fit_polynomial_map(DATA.inputs, *training, ("y1", "y2"), degree)(DATA.u), name)
+        for name, degree in (("quadratic", 2), ("linear", 1))
+    )
     assert quadratic["validation_nmse"].max() < 1e-20
     assert linear["validation_nmse"].min() > 1e-3
     assert list(quadratic.columns) == ["output", "train_nmse", "validation_nmse", "validation_r2", "model"]
@@ -88,7 +87,7 @@ def test_accuracy_is_relative_to_the_variance():
 
 
 def test_a_network_learns_and_its_losses_are_those_of_the_table(tmp_path):
-    fit = fit_coefficients(TRIAL, DATA, tmp_path)
+    fit = fit_map(TRIAL, DATA, tmp_path)
     assert fit.status == "finished"
     assert fit.epochs == 30
     table = accuracy(DATA, fit.surrogate(DATA.u), "network")
@@ -99,7 +98,7 @@ def test_a_network_learns_and_its_losses_are_those_of_the_table(tmp_path):
 
 
 def test_interrupted_and_resumed_it_comes_to_the_same_weights(tmp_path, monkeypatch):
-    whole = fit_coefficients(TRIAL, DATA, tmp_path / "whole")
+    whole = fit_map(TRIAL, DATA, tmp_path / "whole")
     monkeypatch.setattr("flexsurr.training.epochs.CHECKPOINT_EVERY_S", 0.0)
 
     def interrupt(epoch, *losses):
@@ -108,9 +107,9 @@ def test_interrupted_and_resumed_it_comes_to_the_same_weights(tmp_path, monkeypa
 
     folder = tmp_path / "resumed"
     with pytest.raises(KeyboardInterrupt):
-        fit_coefficients(TRIAL, DATA, folder, interrupt)
+        fit_map(TRIAL, DATA, folder, interrupt)
     epochs = []
-    resumed = fit_coefficients(TRIAL, DATA, folder, lambda epoch, *losses: epochs.append(epoch))
+    resumed = fit_map(TRIAL, DATA, folder, lambda epoch, *losses: epochs.append(epoch))
     assert epochs[0] == 12  # the eleventh was the last to be kept
     np.testing.assert_array_equal(resumed.surrogate.parameters, whole.surrogate.parameters)
     assert list(folder.iterdir()) == []
@@ -122,16 +121,16 @@ def test_four_networks_are_the_four_fits_of_their_outputs(tmp_path):
     names = {"output_names": COEFFICIENTS, "output_units": COEFFICIENT_UNITS}
     samples = quadratic_samples()
     metadata = dataclasses.replace(samples.metadata, **names)
-    data = coefficient_data(dataclasses.replace(samples, y=y, metadata=metadata), 0.2, 1)
+    data = map_data(dataclasses.replace(samples, y=y, metadata=metadata), 0.2, 1)
     trial = TRIAL.model_copy(update={"hidden": (4,), "epochs": 5, "networks": "four"})
     reported = []
-    fit = fit_coefficients(trial, data, tmp_path, lambda epoch, *losses: reported.append(epoch))
+    fit = fit_map(trial, data, tmp_path, lambda epoch, *losses: reported.append(epoch))
     assert reported == list(range(1, 21))
     assert list(tmp_path.iterdir()) == []
     assert (fit.surrogate.hidden, fit.surrogate.output_names) == (16, COEFFICIENTS)
     single = trial.model_copy(update={"networks": "one"})
     for name, outputs in OUTPUT_GROUPS.items():
-        alone = fit_coefficients(single, data.only(outputs), tmp_path)
+        alone = fit_map(single, data.only(outputs), tmp_path)
         places = [COEFFICIENTS.index(output) for output in outputs]
         np.testing.assert_allclose(fit.surrogate(data.u)[:, places], alone.surrogate(data.u), atol=1e-12)
         losses = fit.history.loc[fit.history["outputs"] == name, "train_loss"]
@@ -149,7 +148,7 @@ def test_of_four_networks_the_worst_end_is_that_of_all_with_every_reason():
 
 def test_a_hopeless_map_is_stopped(tmp_path):
     rule = GiveUp(after_epochs=3, above_nmse=1e-9)
-    result = fit_coefficients(TRIAL.model_copy(update={"give_up": rule}), DATA, tmp_path)
+    result = fit_map(TRIAL.model_copy(update={"give_up": rule}), DATA, tmp_path)
     assert (result.status, result.epochs) == ("stopped", 3)
     assert "above 1e-09" in result.reason
 
@@ -170,16 +169,16 @@ def test_with_second_order_terms_a_product_of_two_features_is_learned_by_less(tm
         output_names=("y",),
         output_units=("1",),
     )
-    data = coefficient_data(Samples(u, y, metadata), 0.2, 1)
+    data = map_data(Samples(u, y, metadata), 0.2, 1)
     plain = TRIAL.model_copy(update={"hidden": (1,), "epochs": 20})
     second = plain.model_copy(update={"inputs": "second_order"})
-    errors = [fit_coefficients(trial, data, tmp_path).validation_nmse for trial in (plain, second)]
+    errors = [fit_map(trial, data, tmp_path).validation_nmse for trial in (plain, second)]
     assert errors[1] < 0.1 * errors[0]
 
 
 def test_lbfgs_lessens_the_loss_too(tmp_path):
     trial = trial_of(**TRIAL.model_dump() | {"optimiser": "lbfgs", "epochs": 40})
-    fit = fit_coefficients(trial, DATA, tmp_path)
+    fit = fit_map(trial, DATA, tmp_path)
     losses = fit.history["train_loss"]
     assert losses.iloc[-1] < 0.1 * losses.iloc[0]
 
@@ -188,10 +187,10 @@ def test_the_last_weights_are_kept_where_the_trial_says_so(tmp_path):
     """Of noisy samples the best are not the last: the network goes on to fit the noise of those it sees."""
     samples = quadratic_samples(120)
     noise = np.random.default_rng(7).standard_normal(samples.y.shape)
-    data = coefficient_data(dataclasses.replace(samples, y=samples.y + 0.5 * noise), 0.5, 1)
+    data = map_data(dataclasses.replace(samples, y=samples.y + 0.5 * noise), 0.5, 1)
     trial = TRIAL.model_copy(update={"keep": "last", "epochs": 60})
     last, best = (
-        fit_coefficients(trial.model_copy(update={"keep": keep}), data, tmp_path) for keep in ("last", "best")
+        fit_map(trial.model_copy(update={"keep": keep}), data, tmp_path) for keep in ("last", "best")
     )
     assert last.best_epoch == best.best_epoch < 60
     np.testing.assert_array_equal(last.best.parameters, best.surrogate.parameters)
@@ -201,9 +200,9 @@ def test_the_last_weights_are_kept_where_the_trial_says_so(tmp_path):
 
 def test_a_polynomial_comes_back_from_its_file(tmp_path):
     trial = trial_of(architecture="quadratic", optimiser="least_squares")
-    fit = fit_coefficients(trial, DATA, tmp_path)
+    fit = fit_map(trial, DATA, tmp_path)
     assert (fit.status, fit.epochs) == ("finished", 1)
-    save_coefficient_polynomial(fit.surrogate, tmp_path / "weights.npz")
-    again = load_coefficient_polynomial(tmp_path / "weights.npz")
+    save_map(fit.surrogate, tmp_path / "weights.npz")
+    again = load_map(tmp_path / "weights.npz")
     np.testing.assert_array_equal(again(DATA.u), fit.surrogate(DATA.u))
-    assert fit.parameters == again.parameters.size == 20
+    assert fit.parameters == again.parameter_count == 20
