@@ -66,9 +66,10 @@ def test_a_batch_makes_again_only_the_trial_that_is_gone(in_batches, make_projec
     lost, *kept = keys
     assert kept
     shutil.rmtree(project.results / "runs" / lost)
-    (project.results / f"batches/{BEAM}/trials-{batch}.json").unlink()
+    marker = f"results/batches/{BEAM}/trials-{batch}.json"
+    (project.root / marker).unlink()
     before = {key: (project.results / f"runs/{key}/weights.npz").stat().st_mtime_ns for key in kept}
-    project.run_well(*TARGETS)
+    project.run_well(marker)
     assert (project.results / f"runs/{lost}/metrics.json").is_file()
     assert {key: (project.results / f"runs/{key}/weights.npz").stat().st_mtime_ns for key in kept} == before
 
