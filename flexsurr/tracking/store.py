@@ -18,7 +18,7 @@ from flexsurr.tracking.trouble import warn
 log = logging.getLogger(__name__)
 
 SWEEP = "flexsurr.sweep"  # marks the parent run of a study's sweeps
-KIND = {"mlflow.experimentKind": "custom_model_development"}  # the page opens on runs instead of traces
+KIND = {"mlflow.experimentKind": "custom_model_development"}  # not of language models
 PLACES = {
     "experiments": ("artifact_location",),
     "runs": ("artifact_uri",),
