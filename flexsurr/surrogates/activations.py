@@ -101,11 +101,11 @@ def _formulas(functions: Functions) -> dict[str, tuple[Function, Function, Funct
     """σ, σ′ and σ″ of every activation."""
     exp, log, sqrt, atan, tanh, logistic, above, below = functions
 
-    def tanh_curvature(z):
+    def tanh_curvature(z: Any) -> Any:
         t = tanh(z)
         return -2.0 * t * (1.0 - t * t)
 
-    def silu_curvature(z):
+    def silu_curvature(z: Any) -> Any:
         s = logistic(z)
         return s * (1.0 - s) * (2.0 + z * (1.0 - 2.0 * s))
 
