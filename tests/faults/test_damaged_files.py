@@ -119,7 +119,7 @@ def test_the_command_says_what_to_do(results):
     halve(path, path)
     job = write_job(results.root / "jobs", "select", {"study": STUDY, "sweeps": {"default": [RUN]}})
     words = [sys.executable, "-m", "flexsurr.cli.select", "--job", str(job), "--runs"]
-    words += [str(results.root / "runs"), "--store", "none", "--output", str(results.root / "choice.json")]
+    words += [str(results.root / "runs"), "--output", str(results.root / "choice.json")]
     done = subprocess.run(words, cwd=REPOSITORY, capture_output=True, text=True, timeout=120)
     assert done.returncode == 1
     (said,) = [line for line in done.stderr.splitlines() if line.startswith("flexsurr select: ")]
