@@ -3,15 +3,20 @@
 import argparse
 import logging
 import sys
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
+from flexsurr import __version__
 from flexsurr.cli.command import personal
-from flexsurr.storage import StorageError
+from flexsurr.config.errors import ConfigurationError
+from flexsurr.storage import StorageError, read_json
+from flexsurr.tracking.champion import Champion, Interface, is_registered, register
 from flexsurr.tracking.page import Page
 from flexsurr.tracking.recording import end_sweeps, log_whole, record
-from flexsurr.tracking.run_files import RunFiles, runs_by_study
+from flexsurr.tracking.run_files import RunFiles, digest, runs_by_study
 from flexsurr.tracking.store import Store, create_store, read_store, store_uri, write_store
+from flexsurr.training.selection import ERROR
 
 log = logging.getLogger(__name__)
 
@@ -32,7 +37,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def main(results: Path, sync: bool, uri: str | None) -> None:
-    """Log scores and figures that the page lacks, and with `sync` whole runs.
+    """Log scores, figures and champions that the page lacks, and with `sync` whole runs.
 
     A line for each study says what it lacks then. Raises StorageError if that is so in spite of `sync`.
     """
@@ -70,19 +75,56 @@ def _brought(page: Page, results: Path, study: str, runs: Sequence[RunFiles], sy
         logged = [run for run in missing if log_whole(page, run)]
         log.info("tracking: %s: %s logged from their files", study, _counted(len(logged)))
         missing = record(page, study, runs, figures)
+    _register(page, results, study)
     if not sync:
         end_sweeps(page, study, runs)
     lacks = []
     if missing:
         lacks.append(_counted(len(missing)))
     if not page.is_reachable:
-        lacks.append("scores and figures")
+        lacks.append("scores, figures and champions")
     if lacks:
         yield f"{study}: not logged: {', '.join(lacks)}; flexsurr track --sync logs them"
 
 
 def _counted(runs: int) -> str:
     return f"{runs} run{'s' * (runs != 1)}"
+
+
+def _register(page: Page, results: Path, study: str) -> None:
+    """Register the surrogates of a study that were chosen last."""
+    selection = results / "selected" / f"{study}.json"
+    if not (selection.is_file() and page.is_reachable):
+        return
+    for name, entry in _chosen(selection):
+        try:
+            _register_one(page, name, study, results / "runs" / entry["run_id"] / "weights.npz", entry)
+        # a file that was deleted or damaged since, or a network of the user's own that is not here
+        except (StorageError, ConfigurationError, OSError) as error:
+            log.warning("tracking: %s: no champion: %s", name, error)
+
+
+def _register_one(page: Page, name: str, study: str, weights: Path, entry: Mapping[str, Any]) -> None:
+    champion = Champion(name, study, entry["run_id"], digest(weights))
+    if page.attempt(lambda client, _: is_registered(client, champion)) or not page.is_reachable:
+        return
+    from flexsurr.served import card, served  # here, for it takes a second that is seldom needed
+
+    model = served(weights)
+    interface = Interface(
+        model.inputs, model.outputs, model.defaults, model.example, f"flexsurr=={__version__}"
+    )
+    text = card(model, name, entry)
+    page.attempt(lambda client, store: register(client, store, champion, weights, interface, text))
+
+
+def _chosen(selection: Path) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Of each variant the run whose long response errs least."""
+    study = selection.stem
+    for of_what, chosen in read_json(selection).items():
+        named = [entry for entry in chosen.values() if isinstance(entry, dict)]
+        if named:
+            yield f"{study}-{of_what}", min(named, key=lambda entry: entry[ERROR])
 
 
 if __name__ == "__main__":

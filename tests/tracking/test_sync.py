@@ -1,5 +1,6 @@
 """`flexsurr track`: what the page lacks, it gets from the files, once."""
 
+import json
 import shutil
 import subprocess
 import sys
@@ -106,7 +107,7 @@ def test_a_store_away_while_training_is_said_and_made_up_for(results, capsys):
     folder = train(results, "hnn-1")
     assert (folder / UNLOGGED).exists()
     track.main(results, sync=False, uri=None)
-    said = "cantilever: not logged: 1 run, scores and figures; flexsurr track --sync logs them"
+    said = "cantilever: not logged: 1 run, scores, figures and champions; flexsurr track --sync logs them"
     assert said in capsys.readouterr().err
     with pytest.raises(StorageError, match="not all of it is on the page"):
         track.main(results, sync=True, uri=None)
@@ -158,3 +159,12 @@ def test_a_study_that_the_store_does_not_know_waits_for_a_sync(results):
     assert "wing" not in read_store(results / "mlflow/store.json").experiments
     track.main(results, sync=True, uri=None)
     assert set(read_store(results / "mlflow/store.json").experiments) == {"cantilever", "wing"}
+
+
+def test_a_selection_without_its_run_registers_nothing(results, caplog):
+    train(results, "hnn-1")
+    (results / "selected").mkdir()
+    entry = {"run_id": "hnn-gone", "long_response_error_percent_worst": 1.0}
+    (results / "selected/cantilever.json").write_text(json.dumps({"hamiltonian": {"hnn": entry}}))
+    track.main(results, sync=False, uri=None)
+    assert "hnn-gone/weights.npz: cannot be read" in caplog.text

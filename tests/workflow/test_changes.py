@@ -198,5 +198,5 @@ def test_without_a_store_results_are_made_all_the_same(copy_of_quick):
     copy_of_quick.change(SWEEP, "spaces.1.hidden", [[4]])
     output = copy_of_quick.run_well(f"results/selected/{BEAM}.json")
     assert "results are made without it" in output
-    assert f"{BEAM}: not logged: 2 runs, scores and figures" in output
+    assert f"{BEAM}: not logged: 2 runs, scores, figures and champions" in output
     assert copy_of_quick.scheduled(f"results/selected/{BEAM}.json") == {}

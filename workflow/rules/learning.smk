@@ -11,7 +11,7 @@ onstart:
     shell("python -m flexsurr store --job {tracked:q} --output {STORE:q}")
 
 
-# What no job could log: scores and figures. It says what the page lacks.
+# What no job could log: scores, figures, the chosen surrogates. It says what the page lacks.
 onsuccess:
     shell("python -m flexsurr track --results {RESULTS:q} || true")
 

@@ -1,0 +1,125 @@
+"""A saved surrogate as MLflow serves it: what goes in, what comes out, and its card.
+
+    import mlflow, pandas
+    beam = mlflow.pyfunc.load_model("models:/cantilever-hamiltonian@champion")
+    beam.predict(pandas.DataFrame({"eta_1": [0.2], "p_1": [0.0]}), params={"duration_s": 1.0})
+
+MLflow imports this module by its name and calls `_load_pyfunc`; nothing here imports MLflow. What is loaded
+are arrays with a JSON header, no code, but for a network of the user's own, whose file has to be here.
+"""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from flexsurr.library import LoadedSurrogate, load_surrogate
+from flexsurr.surrogates import Hamiltonian
+
+RESPONSE = "response"
+"""The column that says to which row of the input a row of a response belongs, counted from 0."""
+DURATION_S, STEP_S = 10.0, 0.01
+
+
+class ServedField:
+    """A surrogate of a field: rows of initial states in, their free responses out, one below the other.
+
+    The columns out are `response`, and those of `flexsurr.library.Response.table`. Parameters: duration_s,
+    step_s [s].
+    """
+
+    defaults: Mapping[str, float] = {"duration_s": DURATION_S, "step_s": STEP_S}
+
+    def __init__(self, surrogate: LoadedSurrogate) -> None:
+        self._surrogate = surrogate
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """The states."""
+        return self._surrogate.state_names
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """The columns of a response."""
+        saved = self._surrogate.saved
+        tip = () if saved.basis is None else ("tip_x_m", "tip_y_m", "tip_z_m", "tip_twist_rad")
+        energy = ("energy_J",) if isinstance(saved.surrogate, Hamiltonian) else ()
+        return (RESPONSE, "t_s", *self.inputs, *tip, *energy)
+
+    @property
+    def example(self) -> pd.DataFrame:
+        """One initial state, within the training range."""
+        low, high = self._surrogate.saved.low, self._surrogate.saved.high
+        return _row(self.inputs, low + 0.625 * (high - low))
+
+    def __str__(self) -> str:
+        """What it stands for, and where it was trained."""
+        return str(self._surrogate)
+
+    def predict(self, model_input: pd.DataFrame, params: Mapping[str, Any] | None = None) -> pd.DataFrame:
+        """The free responses of rows of initial states; warns with `OutOfRange` beyond the training range."""
+        wanted = {**self.defaults, **(params or {})}
+        tables = []
+        for number, state in enumerate(model_input[list(self.inputs)].to_numpy(np.float64)):
+            table = self._surrogate.simulate(initial=state, **wanted).table()
+            table.insert(0, RESPONSE, float(number))
+            tables.append(table)
+        return pd.concat(tables, ignore_index=True)
+
+
+def served(path: str | Path) -> ServedField:
+    """The surrogate that training wrote to `path`.
+
+    Raises SurrogateFileError for a damaged or foreign file, OSError where there is none.
+    """
+    return ServedField(load_surrogate(path))
+
+
+def card(model: ServedField, name: str, metrics: Mapping[str, Any]) -> str:
+    """The model card in Markdown: what it stands for, its ranges, its errors, and how it is loaded."""
+    errors = [
+        f"| {error.replace('_', ' ')} | {value:.3g} |"
+        for error, value in metrics.items()
+        if isinstance(value, float) and error.startswith(MEASURED)
+    ]
+    columns = ", ".join(f'"{column}": [{float(model.example[column][0]):.4g}]' for column in model.inputs[:2])
+    more = ", …" if len(model.inputs) > 2 else ""
+    return "\n".join(
+        [
+            f"The best surrogate of {name}, chosen among all runs of the study.",
+            "",
+            "```",
+            str(model),
+            "```",
+            "",
+            "| error | |",
+            "|---|---|",
+            *errors,
+            "",
+            "Load it where flexsurr is installed; weights are arrays, and nothing that is loaded is code:",
+            "",
+            "```python",
+            "import mlflow, pandas",
+            f'model = mlflow.pyfunc.load_model("models:/{name}@champion")',
+            f"model.predict(pandas.DataFrame({{{columns}{more}}}))",
+            "```",
+            "",
+            "Rows of initial states in, their free responses out; `params` may hold duration_s and step_s. "
+            "`flexsurr.load_surrogate` takes the same file, and forces on it as well. Beyond the ranges "
+            "above its errors are not known.",
+        ]
+    )
+
+
+MEASURED = ("train_nmse", "validation_", "held_out_nmse", "long_response_error", "energy_drift", "own_energy")
+"""How the names of the errors begin that a card shows."""
+
+
+def _row(names: tuple[str, ...], values: Any) -> pd.DataFrame:
+    return pd.DataFrame([values], columns=list(names))
+
+
+def _load_pyfunc(path: str) -> ServedField:
+    return served(path)
