@@ -11,7 +11,7 @@ INSTALLED := $(VENV)/.installed
 export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
 export MLFLOW_DISABLE_TELEMETRY := true
 
-.PHONY: help install reproduce report smoke lint check test coverage audit reference docs ui benchmark browser slurm clean
+.PHONY: help install reproduce report smoke lint check test coverage audit reference docs ui benchmark browser postgresql slurm clean
 
 help:
 	@echo "make install      the environment alone, in .venv"
@@ -71,7 +71,7 @@ smoke: $(INSTALLED)
 		results-smoke/tables/cost.csv results-smoke/figures/cantilever/figure_11.svg
 
 # The quick tests first; those that run the workflow and look at its pages last.
-test: check browser slurm
+test: check browser postgresql slurm
 	OMP_NUM_THREADS=1 python -m pytest -n logical --dist loadfile --ignore=tests/workflow tests
 	python -m pytest tests/workflow
 
@@ -118,6 +118,16 @@ slurm:
 		apt-get update -q && apt-get install -q -y --no-install-recommends slurm-wlm munge; \
 	else \
 		echo "tests need Slurm and munge (Debian: slurm-wlm, munge); install them, or run make slurm as root"; \
+		exit 1; \
+	fi
+
+# They write to a tracking server before Debian's PostgreSQL, which they start themselves.
+postgresql:
+	@if command -v initdb > /dev/null || ls /usr/lib/postgresql/*/bin/initdb > /dev/null 2>&1; then exit 0; fi; \
+	if test "$$(id -u)" = 0 && command -v apt-get > /dev/null; then \
+		apt-get update -q && apt-get install -q -y --no-install-recommends postgresql; \
+	else \
+		echo "tests need PostgreSQL's initdb; install it, or run make postgresql as root"; \
 		exit 1; \
 	fi
 
