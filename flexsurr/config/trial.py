@@ -55,7 +55,8 @@ class StateField(Architecture):
 class TrainedField(StateField):
     """What is trained epoch by epoch."""
 
-    samples_per_trajectory: Count | None = None
+    # left out where it is not given, as give_up below
+    samples_per_trajectory: Count | None = Field(default=None, exclude_if=lambda value: value is None)
     """Trains on at most so many samples of each trajectory, evenly spread; validation sees all of its own.
     Samples that lie close in time say almost the same, and each costs as much as any other.
     """
