@@ -39,15 +39,15 @@ def compile_ahead(firsts: Iterable[Callable[[], object]]) -> None:
     """Call each of `firsts` in one of as many child processes as there are cores, and wait for them.
 
     Each is the first call of something compiled, whose machine code the child leaves on the disk, where
-    this process finds it at its own first call. An error is left for that call too. Children are forks:
-    call it before anything has started threads.
+    this process finds it at its own first call. An error is left for that call too. Children are forks,
+    which end with this process: call it before anything has started threads.
     """
     waiting = list(firsts)
     cores = min(len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 1, len(waiting))
     if cores < 2:
         return
     children = [
-        get_context("fork").Process(target=_call_all, args=(waiting[number::cores],))
+        get_context("fork").Process(target=_call_all, args=(waiting[number::cores],), daemon=True)
         for number in range(cores)
     ]
     for child in children:

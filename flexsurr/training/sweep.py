@@ -17,6 +17,9 @@ from flexsurr.config.trial import Trial, trial_of
 
 DIGITS = 10
 
+TRIED = 1000
+"""So many points are drawn for each combination that is wanted: a narrow range may hold too few."""
+
 Combination = dict[tuple[str, ...], Any]
 """One value of each dimension of a space."""
 
@@ -70,15 +73,19 @@ def _drawn(sweep: Sweep, number: int, dimensions: Mapping[tuple[str, ...], Any])
     }
     fixed = {key: values[0] for key, values in dimensions.items() if key not in varied}
     found: dict[str, Combination] = {}
-    for shares in _shares(sweep, number, len(varied)):
+    assert sweep.draws is not None
+    for shares in itertools.islice(_shares(sweep, number, len(varied)), TRIED * sweep.draws):
         chosen = {
             key: values.at(share) if isinstance(values, Range) else values[int(share * len(values))]
             for (key, values), share in zip(varied.items(), shares.tolist(), strict=True)
         }
         found.setdefault(repr(list(chosen.values())), {**fixed, **chosen})
         if len(found) == sweep.draws:
-            break
-    return list(found.values())
+            return list(found.values())
+    raise ValueError(
+        f"spaces, number {number}: draws: {sweep.draws} is not allowed; allowed: at most {len(found)}, for "
+        "its ranges have no more combinations that differ"
+    )
 
 
 def _shares(sweep: Sweep, number: int, dimensions: int) -> Iterator[NDArray[np.float64]]:

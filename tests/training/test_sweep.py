@@ -84,6 +84,16 @@ def test_a_draw_more_leaves_those_before_it(search, space):
     assert both[:5] == few
 
 
+@pytest.mark.parametrize("search", ["random", "sobol"])
+def test_a_range_too_narrow_for_the_draws_is_refused(search):
+    """Drawn numbers have six digits: here there are three of them."""
+    network = {"architecture": "hnn", "hidden": [[8]], "activation": ["elu"], "optimiser": ["adam"]}
+    network |= {"batch_size": [64], "learning_rate": {"low": 0.1, "high": 0.100002}}
+    assert len(expand(FieldSweep(search=search, draws=3, spaces=[network]))) == 3
+    with pytest.raises(ValueError, match="draws: 4 is not allowed; allowed: at most 3, "):
+        expand(FieldSweep(search=search, draws=4, spaces=[network]))
+
+
 def test_a_sobol_sequence_is_even_where_chance_is_not():
     """Of 64 points every sixteenth of a dimension holds four."""
 
