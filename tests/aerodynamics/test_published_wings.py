@@ -1,6 +1,9 @@
 """Wings of the literature, and another lattice code."""
 
+import importlib.metadata
 import math
+import os
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -80,6 +83,12 @@ SECTION
 def avl(tmp_path_factory):
     path = tmp_path_factory.mktemp("avl") / "wing.avl"
     path.write_text(GEOMETRY)
+    # optvl looks for its libraries behind a link in /tmp. It stops where that link leads to an environment
+    # that is gone, and where two processes make it at once: so the link is there before, made in one step
+    libraries = Path(importlib.metadata.distribution("optvl").locate_file("optvl.libs")).resolve()
+    link = Path(f"/tmp/optvl.libs.{os.getpid()}")
+    link.symlink_to(libraries)
+    link.replace("/tmp/optvl.libs")
     return OVLSolver(geo_file=str(path))
 
 
