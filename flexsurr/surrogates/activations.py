@@ -85,7 +85,10 @@ Function = Callable[..., Any]
 
 
 class Functions(NamedTuple):
-    """What the formulas are made of, for numbers or for arrays; `above` is max(z, 0), `below` min(z, 0)."""
+    """What the formulas are made of, for numbers, arrays or whatever else has them.
+
+    `above` is max(z, 0), `below` min(z, 0).
+    """
 
     exp: Function
     log: Function
@@ -97,7 +100,7 @@ class Functions(NamedTuple):
     below: Function
 
 
-def _formulas(functions: Functions) -> dict[str, tuple[Function, Function, Function]]:
+def formulas(functions: Functions) -> dict[str, tuple[Function, Function, Function]]:
     """σ, σ′ and σ″ of every activation."""
     exp, log, sqrt, atan, tanh, logistic, above, below = functions
 
@@ -193,12 +196,12 @@ def _compile(generic: Function, tag_class: type, formula: Function) -> None:
         return None
 
 
-for _name, _compiled_formulas in _formulas(OF_NUMBERS).items():
+for _name, _compiled_formulas in formulas(OF_NUMBERS).items():
     for _generic, _formula in zip((value, slope, curvature), _compiled_formulas, strict=True):
         _compile(_generic, type(TAGS[_name]), _formula)
 
 ACTIVATIONS = {
-    name: ActivationFunction(*of_arrays, TAGS[name]) for name, of_arrays in _formulas(OF_ARRAYS).items()
+    name: ActivationFunction(*of_arrays, TAGS[name]) for name, of_arrays in formulas(OF_ARRAYS).items()
 }
 
 

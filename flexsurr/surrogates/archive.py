@@ -33,13 +33,7 @@ def read_archive(
 
     Raises SurrogateFileError for a damaged or foreign file, saying that it is not `what`; OSError for none.
     """
-    try:
-        with Path(path).open("rb") as content, np.load(content, allow_pickle=False) as file:
-            arrays = dict(file)
-    except FileNotFoundError:
-        raise
-    except (OSError, EOFError, ValueError, TypeError, RuntimeError, zipfile.BadZipFile) as error:
-        raise SurrogateFileError(f"{path}: not a readable .npz file ({error})") from None
+    arrays = _arrays(path)
     try:
         header = json.loads(str(arrays.pop("header")))
         if header["format"] != form:
@@ -48,6 +42,27 @@ def read_archive(
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         detail = f"no {error}" if isinstance(error, KeyError) else error
         raise SurrogateFileError(f"{path}: not {what} of flexsurr ({detail})") from None
+
+
+def form_of(path: str | Path) -> str:
+    """What form of an archive a file is, "" where it has none.
+
+    Raises SurrogateFileError for a file that is no .npz, OSError for none.
+    """
+    try:
+        return str(json.loads(str(_arrays(path)["header"]))["format"])
+    except (KeyError, TypeError, ValueError):
+        return ""
+
+
+def _arrays(path: str | Path) -> dict[str, np.ndarray]:
+    try:
+        with Path(path).open("rb") as content, np.load(content, allow_pickle=False) as file:
+            return dict(file)
+    except FileNotFoundError:
+        raise
+    except (OSError, EOFError, ValueError, TypeError, RuntimeError, zipfile.BadZipFile) as error:
+        raise SurrogateFileError(f"{path}: not a readable .npz file ({error})") from None
 
 
 def _numbers(name: str, array: np.ndarray) -> np.ndarray:

@@ -58,13 +58,18 @@ class TorchSurrogate(Surrogate):
         return np.asarray(field(self.module, flat).detach().numpy()).reshape(x.shape)
 
     @cached_property
-    def program(self) -> Program | None:
-        """The scaled field, exported; None where the module does what a program cannot do."""
+    def exported(self) -> Program | NotExportable:
+        """The scaled field as a program, or why the module has none."""
         try:
             return program_of(self.module, len(self.state_names))
         except NotExportable as reason:
             log.info("%s runs in torch alone: %s", self.source.network, reason)
-            return None
+            return reason
+
+    @property
+    def program(self) -> Program | None:
+        """The scaled field, exported; None where the module does what a program cannot do."""
+        return self.exported if isinstance(self.exported, Program) else None
 
     @cached_property
     def _in_python(self) -> PythonEquations:

@@ -1,0 +1,237 @@
+"""Models of every kind to export, each with what it must give."""
+
+import sys
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from flexsurr.aerodynamics.features import ALPHA, BETA, COEFFICIENTS, FEATURES, MACH
+from flexsurr.beam import reduce, tip_position, tip_twist
+from flexsurr.config.aircraft import load_aircraft
+from flexsurr.config.structure import Structure
+from flexsurr.config.study import Reduction
+from flexsurr.export import ExportedModel, Quantity, exported_aircraft, exported_map, exported_surrogate
+from flexsurr.export.expressions import argument
+from flexsurr.export.from_program import outputs_of
+from flexsurr.flight import free_modes, stick_model
+from flexsurr.flight.model import FlightModel, features
+from flexsurr.flight.states import ALTITUDE_M, VELOCITY_IN_X
+from flexsurr.surrogates import (
+    ACTIVATIONS,
+    HNN,
+    MLP,
+    DissipativeHNN,
+    FeatureScaling,
+    Intervals,
+    NetworkMap,
+    PolynomialMap,
+)
+from flexsurr.surrogates.monomials import monomials_to_degree
+from flexsurr.surrogates.torch_module import field
+from flexsurr.surrogates.torch_program import program_of
+from flexsurr.training.saved_surrogate import SavedSurrogate
+
+sys.path += [str(Path(__file__).parents[1] / folder) for folder in ("surrogates", "training")]
+
+import torch
+from own_models import Energy, EnergyAndDissipation, Lagrangian, MessagePassing, Plain
+from random_surrogates import (
+    HAMILTONIANS,
+    PORT_HAMILTONIANS,
+    network,
+    port_polynomial,
+)
+from torch import nn
+
+SAMPLES = 20
+GNBA = Path(__file__).resolve().parents[2] / "config/aircraft/gnba.yaml"
+CONTROLS = (-0.02, 0.01, 0.03, -0.04, 0.05, 0.02)
+WING = Structure(
+    name="wing",
+    length_m=2.0,
+    elements=5,
+    joints=("in_plane", "out_of_plane", "torsion"),
+    mass_per_length_kg_m=0.2,
+    bending_stiffness_out_of_plane_N_m2=50.0,
+    bending_stiffness_in_plane_N_m2=500.0,
+    torsional_stiffness_N_m2=20.0,
+    torsional_inertia_per_length_kg_m=1e-3,
+    centre_of_gravity_offset_m=0.02,
+)
+
+
+@dataclass(frozen=True)
+class Case:
+    """A model; states x (m, d) and inputs u (m, n); and the rates and outputs that it stands for."""
+
+    model: ExportedModel
+    x: np.ndarray
+    u: np.ndarray
+    rates: np.ndarray
+    outputs: np.ndarray
+
+
+def of_surrogate(name, surrogate, basis=None) -> Case:
+    """A surrogate, under generalised forces where it takes any."""
+    generator = np.random.default_rng(1)
+    d = len(surrogate.state_names)
+    scale = surrogate.scaling.states(d)
+    saved = SavedSurrogate(surrogate, "tests", "hamiltonian", name, -scale, scale, basis)
+    model = exported_surrogate(saved)
+    x = scale * generator.uniform(-1.0, 1.0, (SAMPLES, d))
+    u = generator.uniform(-1.0, 1.0, (SAMPLES, len(model.inputs)))
+    u *= surrogate.scaling.rates(d)[d - u.shape[1] :]
+    rates = np.array([surrogate.derivative(0.0, row) for row in x])
+    rates[:, d - u.shape[1] :] += u
+    outputs = []
+    if basis is not None:
+        joints = x[:, : d // 2] @ basis.modes.T
+        outputs += [tip_position(WING, joints), tip_twist(WING, joints)[:, None]]
+    if any(quantity.name.startswith("energy") for quantity in model.outputs):
+        outputs.append(surrogate.energy(x)[:, None])
+    return Case(model, x, u, rates, np.hstack(outputs) if outputs else np.empty((SAMPLES, 0)))
+
+
+def of_map(name, learned) -> Case:
+    """A learned map."""
+    low, high = learned.inputs.low, learned.inputs.high
+    u = np.random.default_rng(2).uniform(low, high, (SAMPLES, len(low)))
+    nothing = np.empty((SAMPLES, 0))
+    return Case(exported_map(learned, name), nothing, u, nothing, learned(u))
+
+
+def of_aircraft(name, learned: NetworkMap) -> Case:
+    """The airliner in flight, in turns and at any deformation, on both sides of the tropopause."""
+    generator = np.random.default_rng(6)
+    modes = free_modes(stick_model(load_aircraft(GNBA)), 8)
+    model = FlightModel(modes, learned.compiled(), chosen=(1, 2, 5, 7), controls=CONTROLS, thrust_N=5e4)
+    x = generator.normal(size=(SAMPLES, len(model.state_names)))
+    x[:, ALTITUDE_M] = np.linspace(5e3, 15e3, SAMPLES)
+    x[:, VELOCITY_IN_X] = [200.0, 5.0, 20.0] + 10.0 * generator.normal(size=(SAMPLES, 3))
+    u = np.tile((*CONTROLS, 5e4), (SAMPLES, 1))
+    rates = np.array([model.derivative(0.0, row) for row in x])
+    onsets = features(model, np.zeros(SAMPLES), x)
+    speed = np.linalg.norm(x[:, VELOCITY_IN_X], axis=1)
+    outputs = np.column_stack([speed, onsets[:, [MACH, ALPHA, BETA]], learned(onsets)])
+    return Case(exported_aircraft(model, x[0], learned, name), x, u, rates, outputs)
+
+
+def of_module(name, module: nn.Module, states: int) -> Case:
+    """A torch module, by its program."""
+    module = module.double().requires_grad_(False).eval()
+    x = argument("x", states)
+    quantities = tuple(Quantity(f"x_{k}", "", "state") for k in range(states))
+    none = argument("none", 0)
+    model = ExportedModel(
+        name,
+        (name,),
+        quantities,
+        (),
+        (),
+        x,
+        argument("u", 0),
+        outputs_of(program_of(module, states), x),
+        none,
+        0.1,
+    )
+    at = np.random.default_rng(3).normal(size=(SAMPLES, states))
+    rates = field(module, torch.from_numpy(at)).detach().numpy()
+    nothing = np.empty((SAMPLES, 0))
+    return Case(model, at, nothing, rates, nothing)
+
+
+class Of(nn.Module):
+    """Rates of a given function of a linear map."""
+
+    def __init__(self, states, function):
+        super().__init__()
+        self.linear = nn.Linear(states, states)
+        self.function = function
+
+    def forward(self, x):
+        return self.function(self.linear(x))
+
+
+ELEMENTWISE = (
+    torch.tanh, torch.sigmoid, torch.sin, torch.cos, torch.atan, torch.exp, torch.relu, torch.abs,
+    torch.log1p, torch.expm1, torch.reciprocal, torch.square, nn.functional.softplus,
+    nn.functional.gelu, nn.functional.elu, nn.functional.leaky_relu, nn.functional.hardtanh,
+)  # fmt: skip
+
+
+def _unpaired() -> MLP:
+    """Three states, each with a scale and an origin of its own."""
+    names = {"state_names": ("a", "b", "c"), "state_units": ("m", "", 's "x" \\')}
+    scaling = FeatureScaling((2.0, 0.1, 30.0), (1.0, 5.0, 0.2), (-1.0, 0.3, 7.0), (0.1, 0.2, -4.0))
+    parameters = np.random.default_rng(4).normal(size=3 * 5 + 5 + 5 * 4 + 4 + 4 * 3 + 3)
+    return MLP(parameters, scaling, **names, hidden=(5, 4), activation="elu")
+
+
+def _of_features() -> HNN:
+    """A gradient whose scaling is not canonical."""
+    scaling = FeatureScaling((2.0, 0.1), (1.0, 5.0), (-1.0, 0.3), (0.1, 0.2))
+    return replace(network(HNN, 2, (6,), "tanh"), scaling=scaling)
+
+
+def cases() -> dict[str, Case]:
+    """Every kind of surrogate and map, by name."""
+    basis = reduce(WING, Reduction(modes=3, normalisation="mass"))
+    of_basis = {
+        "wing": port_polynomial(6, 4, even=True),
+        "wing_mlp": network(MLP, 6, (8,), "tanh"),
+        "wing_dissipative": network(DissipativeHNN, 6, (5, 4), "softplus"),
+    }
+    surrogates = {
+        **{f"hamiltonian {name}": surrogate for name, surrogate in HAMILTONIANS.items()},
+        **{f"port {name}": surrogate for name, surrogate in PORT_HAMILTONIANS.items()},
+        **{
+            f"{name} {of.__name__}": network(of, 2, (6, 5), name) for name in ACTIVATIONS for of in (HNN, MLP)
+        },
+        "dissipative": network(DissipativeHNN, 4, (6,), "silu"),
+        "unpaired": _unpaired(),
+        "features": _of_features(),
+    }
+    modules = {
+        form.__name__: form(4) for form in (Plain, Energy, EnergyAndDissipation, Lagrangian, MessagePassing)
+    }
+    modules |= {function.__name__: Of(3, function) for function in ELEMENTWISE}
+    torch.manual_seed(0)
+    found = {
+        **{name: of_surrogate(name, surrogate, basis) for name, surrogate in of_basis.items()},
+        **{name: of_surrogate(name, surrogate) for name, surrogate in surrogates.items()},
+        **{name: of_map(name, learned) for name, learned in maps().items()},
+        "aircraft": of_aircraft("aircraft", _aerodynamics()),
+        **{name: of_module(name, module, module_states(module)) for name, module in modules.items()},
+    }
+    return {case.model.name: case for case in found.values()}
+
+
+def module_states(module: nn.Module) -> int:
+    """How many states it takes."""
+    return 3 if isinstance(module, Of) else 4
+
+
+def _aerodynamics() -> NetworkMap:
+    """Any map of the airliner's features."""
+    generator = np.random.default_rng(7)
+    half = np.array([0.3, 6000.0, 0.2, 0.2, *[0.01] * 3, *[0.3] * 6, *[5.0] * 6, *[0.1] * 6])
+    middle = np.array([0.6, 9000.0, *[0.0] * 23])
+    outputs = Intervals(COEFFICIENTS, np.full(12, -0.5), np.full(12, 0.8))
+    parameters = 0.3 * generator.normal(size=25 * 6 + 6 + 6 * 12 + 12)
+    return NetworkMap(Intervals(FEATURES, middle - half, middle + half), outputs, 6, "tanh", parameters)
+
+
+def maps():
+    generator = np.random.default_rng(5)
+    low = generator.uniform(-2.0, 3.0, 6)
+    inputs = Intervals(tuple(f"u{k}" for k in range(6)), low, low + generator.uniform(0.1, 3.0, 6))
+    outputs = Intervals(("C_L", "C_D"), np.array([-1.0, 0.0]), np.array([2.0, 0.3]))
+    products = ((0, 0), (1, 4), (5, 2))
+    parameters = generator.normal(size=9 * 7 + 7 + 7 * 2 + 2)
+    exponents = np.concatenate([np.zeros((1, 6), dtype=np.int64), monomials_to_degree(6, 3)])
+    coefficients = generator.normal(size=(len(exponents), 2))
+    return {
+        "map network": NetworkMap(inputs, outputs, 7, "softplus", parameters, products),
+        "map polynomial": PolynomialMap(inputs, ("C_L", "C_D"), exponents, coefficients),
+    }
