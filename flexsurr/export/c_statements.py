@@ -152,18 +152,18 @@ class Statements:
         if value.operation in BY_NUMBER:
             self._each(name, 0, value.size, self._expression(value))
         elif value.operation == "concat":
-            first = 0
+            start = 0
             for part in operands:
-                self._each(name, first, part.size, self._element(part))
-                first += part.size
+                self._each(name, start, part.size, self._element(part))
+                start += part.size
         elif value.operation == "matmul":
             self._call("product", *value.detail, *map(self._address, operands), name)
         elif value.operation in ("sum", "amax"):
             self._reduce(name, value)
         elif value.operation == "scatter_add":
-            base, added = operands
+            before, added = operands
             table = self._indices(value.detail)
-            self._each(name, 0, base.size, self._element(base))
+            self._each(name, 0, before.size, self._element(before))
             self._lines.append(
                 f"for (int i = 0; i < {added.size}; i++) {name}[{table}[i]] += {self._element(added)};"
             )
@@ -175,8 +175,9 @@ class Statements:
             self._each(name, 0, right.size, self._element(right))
             self._call("solve", matrix.shape[0], value.detail, copy, name)
         elif value.operation == "take" and not _in_place(value):
-            base, table = self._address(operands[0]), self._indices(value.detail)
-            self._each(name, 0, value.size, f"({base})[{table}[i]]" if "+" in base else f"{base}[{table}[i]]")
+            (first, offset), table = self._base(operands[0]), self._indices(value.detail)
+            place = f"{offset} + {table}[i]" if offset else f"{table}[i]"
+            self._each(name, 0, value.size, f"{first}[{place}]")
         else:
             self._each(name, 0, value.size, self._element(value))
 

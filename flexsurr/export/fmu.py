@@ -101,14 +101,9 @@ def _description(model: ExportedModel, token: str) -> bytes:
         variableNamingConvention="flat",
     )
     keeps = {"canGetAndSetFMUState": "true", "canSerializeFMUState": "true"}
-    xml.SubElement(root, "ModelExchange", modelIdentifier=model.name, **keeps)
-    xml.SubElement(
-        root,
-        "CoSimulation",
-        modelIdentifier=model.name,
-        canHandleVariableCommunicationStepSize="true",
-        **keeps,
-    )
+    xml.SubElement(root, "ModelExchange", {"modelIdentifier": model.name, **keeps})
+    steps = {"canHandleVariableCommunicationStepSize": "true"}
+    xml.SubElement(root, "CoSimulation", {"modelIdentifier": model.name, **steps, **keeps})
     quantities = [*model.states, *model.inputs, *model.outputs]
     units = {quantity.unit for quantity in quantities if quantity.unit}
     units |= {_rate_unit(state) for state in model.states} | {"s"}
@@ -116,21 +111,16 @@ def _description(model: ExportedModel, token: str) -> bytes:
     for unit in sorted(units - {""}):
         xml.SubElement(definitions, "Unit", name=unit)
     experiment = {"stepSize": repr(model.step_s)} if d else {}
-    xml.SubElement(root, "DefaultExperiment", startTime="0", **experiment)
+    xml.SubElement(root, "DefaultExperiment", {"startTime": "0", **experiment})
 
     variables = xml.SubElement(root, "ModelVariables")
 
     def variable(name: str, reference: int, causality: str, unit: str, text: str, **others: str) -> None:
-        given = {"unit": unit} if unit else {}
-        given |= {"description": text} if text else {}
-        xml.SubElement(
-            variables,
-            "Float64",
-            name=name,
-            valueReference=str(reference),
-            causality=causality,
-            **{"variability": "continuous", **given, **others},
-        )
+        attributes = {"name": name, "valueReference": str(reference), "causality": causality}
+        attributes |= {"variability": "continuous"} | others
+        attributes |= {"unit": unit} if unit else {}
+        attributes |= {"description": text} if text else {}
+        xml.SubElement(variables, "Float64", attributes)
 
     variable("time", 0, "independent", "s", "")
     for i, state in enumerate(model.states):
@@ -185,4 +175,5 @@ def _build_description(model: ExportedModel) -> bytes:
 
 def _text(root: xml.Element) -> bytes:
     xml.indent(root)
-    return xml.tostring(root, encoding="utf-8", xml_declaration=True) + b"\n"
+    text: bytes = xml.tostring(root, encoding="utf-8", xml_declaration=True)
+    return text + b"\n"

@@ -23,5 +23,5 @@ def _network(learned: NetworkMap, scaled: Value) -> Value:
     if learned.products:
         first, second = np.array(learned.products).T
         scaled = concat([scaled, take(scaled, first) * take(scaled, second)])
-    outputs = sigma(scaled @ weights + biases) @ weights_out + biases_out
+    outputs: Value = sigma(scaled @ weights + biases) @ weights_out + biases_out
     return outputs * learned.outputs.half + learned.outputs.origin

@@ -53,8 +53,8 @@ def onnx_file(model: ExportedModel) -> bytes:
     graph = _Graph(onnx, given[0][0])
     for name, argument in given:
         graph.names[argument.detail] = name
-    results = [(RATES_NAME, model.rates), (OUTPUTS_NAME, model.results)]
-    results = [(name, value) for name, value in results if value is not None and value.size]
+    possible = [(RATES_NAME, model.rates), (OUTPUTS_NAME, model.results)]
+    results = [(name, value) for name, value in possible if value is not None and value.size]
     for name, value in results:
         graph.node("Identity", [graph.full(value)], output=name)
     proto = helper.make_model(
@@ -62,7 +62,7 @@ def onnx_file(model: ExportedModel) -> bytes:
             graph.nodes,
             model.name,
             [signature(name, argument.size) for name, argument in given],
-            [signature(name, value.size) for name, value in results if value is not None],
+            [signature(name, value.size) for name, value in results],
             graph.initializers,
         ),
         opset_imports=[helper.make_opsetid("", OPSET)],

@@ -145,7 +145,7 @@ def _network_mass(surrogate: NetworkPortHamiltonian, q: Value) -> tuple[Value, A
         # Σ q̇_i (Lᵀ q̇)_j ∂L_ij/∂q
         turned = rates @ factor
         adjoint = ((take(rates, rows) * take(turned, columns)) @ readout) * sigma_slope(z)
-        by_inputs = adjoint @ weights.T
+        by_inputs: Value = adjoint @ weights.T
         if not surrogate.even:
             return by_inputs
         both = take(by_inputs, _packed_places(r)) * (1.0 + np.eye(r))
