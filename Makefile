@@ -11,7 +11,7 @@ INSTALLED := $(VENV)/.installed
 export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
 export MLFLOW_DISABLE_TELEMETRY := true
 
-.PHONY: help install reproduce report smoke lint check test coverage audit reference docs ui benchmark browser postgresql slurm clean
+.PHONY: help install reproduce report smoke lint check test coverage audit reference docs ui benchmark browser postgresql slurm compiler clean
 
 help:
 	@echo "make install      the environment alone, in .venv"
@@ -71,7 +71,7 @@ smoke: $(INSTALLED)
 		results-smoke/tables/cost.csv results-smoke/figures/cantilever/figure_11.svg
 
 # The quick tests first; those that run the workflow and look at its pages last.
-test: check browser postgresql slurm
+test: check browser postgresql slurm compiler
 	OMP_NUM_THREADS=1 python -m pytest -n logical --dist loadfile --ignore=tests/workflow tests
 	python -m pytest tests/workflow
 
@@ -128,6 +128,16 @@ postgresql:
 		apt-get update -q && apt-get install -q -y --no-install-recommends postgresql; \
 	else \
 		echo "tests need PostgreSQL's initdb; install it, or run make postgresql as root"; \
+		exit 1; \
+	fi
+
+# They compile what is exported as C.
+compiler:
+	@if command -v cc > /dev/null; then exit 0; fi; \
+	if test "$$(id -u)" = 0 && command -v apt-get > /dev/null; then \
+		apt-get update -q && apt-get install -q -y --no-install-recommends gcc libc6-dev; \
+	else \
+		echo "tests need a C compiler, cc; install one, or run make compiler as root"; \
 		exit 1; \
 	fi
 

@@ -23,6 +23,13 @@ from flexsurr.export.scaled_fields import NotExported
 
 SOURCE = Path(__file__).with_name("fmi3_model.c")
 STEP_NAME = "internal_step_s"
+BASE_UNITS = {
+    "m": {"m": 1}, "s": {"s": 1}, "rad": {"rad": 1}, "kg": {"kg": 1}, "m/s": {"m": 1, "s": -1},
+    "rad/s": {"rad": 1, "s": -1}, "N": {"kg": 1, "m": 1, "s": -2}, "J": {"kg": 1, "m": 2, "s": -2},
+    "rad/m": {"rad": 1, "m": -1}, "1": {},
+}  # fmt: skip
+"""What units are made of, for importers that convert them; they leave all others as they are."""
+
 ENDINGS = {"linux": "so", "darwin": "dylib", "windows": "dll"}
 OPTIONS = ("-std=c99", "-O2", "-fPIC", "-fvisibility=hidden", "-shared")
 
@@ -39,7 +46,9 @@ def fmu(model: ExportedModel) -> bytes:
     content = io.BytesIO()
     with zipfile.ZipFile(content, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, data in files.items():
-            archive.writestr(zipfile.ZipInfo(name), data, zipfile.ZIP_DEFLATED)
+            entry = zipfile.ZipInfo(name)  # without the time of day: the same model is the same bytes
+            entry.external_attr = 0o644 << 16
+            archive.writestr(entry, data, zipfile.ZIP_DEFLATED)
     return content.getvalue()
 
 
@@ -109,7 +118,9 @@ def _description(model: ExportedModel, token: str) -> bytes:
     units |= {_rate_unit(state) for state in model.states} | {"s"}
     definitions = xml.SubElement(root, "UnitDefinitions")
     for unit in sorted(units - {""}):
-        xml.SubElement(definitions, "Unit", name=unit)
+        defined = xml.SubElement(definitions, "Unit", name=unit)
+        if (powers := BASE_UNITS.get(unit)) is not None:
+            xml.SubElement(defined, "BaseUnit", {base: str(power) for base, power in powers.items()})
     experiment = {"stepSize": repr(model.step_s)} if d else {}
     xml.SubElement(root, "DefaultExperiment", {"startTime": "0", **experiment})
 

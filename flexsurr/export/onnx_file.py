@@ -112,10 +112,10 @@ class _Graph:
 
     def of(self, result: Value) -> str:
         """The name of the tensor that holds `result`."""
-        for each_value in ordered([result]):
-            if id(each_value) not in self.names:
-                self.names[id(each_value)] = self._tensor(each_value)
-        return self.names[id(result)]
+        for needed in ordered([result]):
+            if needed not in self.names and (needed is result or needed.operation != "constant"):
+                self.names[needed] = self._tensor(needed)
+        return self.names[result]
 
     def full(self, value: Value) -> str:
         """As `of`, for each of the batch, a constant too."""
