@@ -2,6 +2,7 @@
 
 import logging
 from collections.abc import Iterable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 from types import MappingProxyType
@@ -26,7 +27,7 @@ from flexsurr.evaluation.contenders import Contender, contenders
 from flexsurr.evaluation.energy import drift_percent, energy_error_percent
 from flexsurr.evaluation.published import beside
 from flexsurr.evaluation.ratios import PAPERS_INTEGRATOR, summary
-from flexsurr.evaluation.timing import compile_ahead, measuring, wall_time
+from flexsurr.evaluation.timing import compile_ahead, cores, measuring, wall_time
 from flexsurr.simulation import Trajectory, simulate
 from flexsurr.simulation.rhs import Array, Model
 
@@ -36,6 +37,9 @@ log = logging.getLogger(__name__)
 # with the described model. So many calls are a steady measure by themselves, and the first few have to do.
 STEPS_IN_PYTHON = "scipy_"
 
+ENOUGH_S = 0.1
+"""A simulation whose repeats have taken so long together is timed."""
+
 
 @dataclass(frozen=True)
 class Setup:
@@ -43,6 +47,10 @@ class Setup:
 
     contender: Contender
     integrator: Integrator
+
+    def __str__(self) -> str:
+        """As the log has it."""
+        return " ".join((self.contender.model, self.contender.implementation, self.integrator.label))
 
     def simulations(self, settings: EvaluationSettings, variant: Variant) -> int:
         """How many of the study's simulations this row runs."""
@@ -121,37 +129,61 @@ def measurements(
         if setup.contender.steppable
     )
     models = [*contenders(basis, variant, surrogates, with_torch=True), *learned]
-    rows = []
+    timed: list[Timed] = []
     with measuring():
         for setup in setups(models, settings.integrators):
-            timed = [
-                _measure(setup, basis, variant, reference, setup.repeats(settings))
+            repeats = setup.repeats(settings)
+            simulated = [
+                _timed(setup, basis, reference, repeats)
                 for reference in references[: setup.simulations(settings, variant)]
             ]
-            rows += timed
+            timed += simulated
             log.info(
-                "%s %s: %s, %d simulations of %g s at %.3g s each, worst tip error %.3g %%, %d diverged",
+                "%s %s: %s, %d simulations of %g s at %.3g s each",
                 variant,
                 response,
-                " ".join((timed[0]["model"], timed[0]["implementation"], timed[0]["integrator"])),
-                len(timed),
+                setup,
+                len(simulated),
                 settings.duration_s,
-                sum(row["wall_s"] for row in timed) / len(timed),
-                max(row["tip_error_percent"] for row in timed),
-                sum(not row["completed"] for row in timed),
+                sum(one.wall_s for one in simulated) / len(simulated),
             )
-    return pd.DataFrame(rows)
+    # All that is timed has been: the other cores may help now.
+    with ThreadPoolExecutor(cores()) as pool:
+        rows = pd.DataFrame(pool.map(partial(_judged, basis, variant), timed))
+    for names, part in rows.groupby(["model", "implementation", "integrator"], sort=False):
+        log.info(
+            "%s %s: %s, worst tip error %.3g %%, %d diverged",
+            variant,
+            response,
+            " ".join(map(str, names)),
+            part["tip_error_percent"].max(),
+            (~part["completed"]).sum(),
+        )
+    return rows
 
 
-def _measure(
-    setup: Setup, basis: ModalBasis, variant: Variant, reference: Reference, repeats: int
-) -> dict[str, Any]:
-    """Time one simulation and judge its trajectory."""
+@dataclass(frozen=True, eq=False)
+class Timed:
+    """One simulation that has been timed, and what it is to be judged by."""
+
+    setup: Setup
+    reference: Reference
+    trajectory: Trajectory
+    wall_s: float
+
+
+def _timed(setup: Setup, basis: ModalBasis, reference: Reference, repeats: int) -> Timed:
     model = setup.contender.under(basis, reference.case)
     _first_steps(setup, basis, reference)
     trajectory, wall_s = wall_time(
-        partial(_run, model, reference.t, reference.case.x0, setup.integrator), repeats
+        partial(_run, model, reference.t, reference.case.x0, setup.integrator), repeats, ENOUGH_S
     )
+    return Timed(setup, reference, trajectory, wall_s)
+
+
+def _judged(basis: ModalBasis, variant: Variant, timed: Timed) -> dict[str, Any]:
+    """The row of one simulation."""
+    setup, reference, trajectory = timed.setup, timed.reference, timed.trajectory
     exact = reduced_order(basis, variant, "numpy")
     own = setup.contender.energy(trajectory.x)
     error = tip_error(reference, tip_motion(exact, trajectory.x))
@@ -161,7 +193,7 @@ def _measure(
         "implementation": setup.contender.implementation,
         "integrator": setup.integrator.label,
         "simulation": reference.case.number,
-        "wall_s": wall_s,
+        "wall_s": timed.wall_s,
         "completed": trajectory.completed,
         "tip_error_percent": error.whole_percent,
         "tip_error_2s_percent": error.short_percent,

@@ -1,6 +1,7 @@
 """Wall time of one simulation, on one thread."""
 
 import gc
+import math
 import os
 import statistics
 import sys
@@ -13,9 +14,12 @@ from typing import TypeVar
 Result = TypeVar("Result")
 
 
-def wall_time(run: Callable[[], Result], repeats: int = 1) -> tuple[Result, float]:
+def wall_time(
+    run: Callable[[], Result], repeats: int = 1, enough_s: float = math.inf
+) -> tuple[Result, float]:
     """The result of `run` and its median wall time [s] over `repeats` calls, garbage collection off.
 
+    There are no more calls once they have taken `enough_s` [s] together: what takes long is steady.
     The caller warms up: the first call of a compiled function compiles it or loads it from the disk.
     """
     if repeats < 1:
@@ -29,10 +33,17 @@ def wall_time(run: Callable[[], Result], repeats: int = 1) -> tuple[Result, floa
             start = perf_counter()
             result = run()
             times.append(perf_counter() - start)
+            if sum(times) >= enough_s:
+                break
     finally:
         if collecting:
             gc.enable()
     return result, statistics.median(times)
+
+
+def cores() -> int:
+    """How many cores this process may use, where the system says so."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 1
 
 
 def compile_ahead(firsts: Iterable[Callable[[], object]]) -> None:
@@ -43,12 +54,12 @@ def compile_ahead(firsts: Iterable[Callable[[], object]]) -> None:
     which end with this process: call it before anything has started threads.
     """
     waiting = list(firsts)
-    cores = min(len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 1, len(waiting))
-    if cores < 2:
+    number = min(cores(), len(waiting))
+    if number < 2:
         return
     children = [
-        get_context("fork").Process(target=_call_all, args=(waiting[number::cores],), daemon=True)
-        for number in range(cores)
+        get_context("fork").Process(target=_call_all, args=(waiting[first::number],), daemon=True)
+        for first in range(number)
     ]
     for child in children:
         child.start()

@@ -18,6 +18,14 @@ def test_the_median_of_the_repeats_is_reported(monkeypatch):
     assert (result, wall_s) == (3, 3.0)
 
 
+def test_what_takes_long_is_repeated_until_it_is_enough(monkeypatch):
+    readings = itertools.chain.from_iterable((0.0, seconds) for seconds in (0.07, 0.05, 9.0))
+    monkeypatch.setattr(timing, "perf_counter", lambda: next(readings))
+    calls = []
+    _, wall_s = timing.wall_time(lambda: calls.append(1), repeats=3, enough_s=0.1)
+    assert (len(calls), wall_s) == (2, pytest.approx(0.06))
+
+
 def test_time_is_positive_and_no_garbage_is_collected_meanwhile():
     collecting, wall_s = timing.wall_time(gc.isenabled)
     assert wall_s > 0.0
