@@ -2,10 +2,6 @@
 
 import math
 
-from scipy.integrate import quad
-from scipy.optimize import brentq
-from scipy.special import ellipkinc
-
 LARGEST_LOAD = 100.0
 """F L²/EI up to which the closed form is evaluated: the tip's slope nears a right angle."""
 
@@ -28,6 +24,11 @@ def elastica_tip(bending_stiffness: float, length: float, tip_force: float) -> t
         raise ValueError(f"tip_force: {tip_force} N is beyond F L²/EI = {LARGEST_LOAD:g}")
     if tip_force == 0.0:
         return length, 0.0
+
+    # here, for they take a third of a second that nothing else of the beam needs
+    from scipy.integrate import quad
+    from scipy.optimize import brentq
+    from scipy.special import ellipkinc
 
     def clamp(rise: float) -> float:
         """δ for sin θ₀ = rise."""

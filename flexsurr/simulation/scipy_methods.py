@@ -6,19 +6,19 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.integrate import BDF, DOP853, LSODA, RK45, OdeSolver, Radau
 
 from flexsurr.config.study import Integrator
 from flexsurr.simulation.outcome import Outcome
 from flexsurr.simulation.rhs import Array, Model
 
-SOLVERS: dict[str, type[OdeSolver]] = {
-    "scipy_radau": Radau,
-    "scipy_bdf": BDF,
-    "scipy_lsoda": LSODA,
-    "scipy_rk45": RK45,
-    "scipy_dop853": DOP853,
+SOLVERS = {
+    "scipy_radau": "Radau",
+    "scipy_bdf": "BDF",
+    "scipy_lsoda": "LSODA",
+    "scipy_rk45": "RK45",
+    "scipy_dop853": "DOP853",
 }
+"""The names of SciPy's classes."""
 
 # A solver that is fed NaN may shrink its step for ever.
 _LONGEST_RUN_OF_NON_FINITE = 1000
@@ -43,15 +43,18 @@ class _Derivative:
 
 def run_scipy(model: Model, integrator: Integrator) -> Callable[[Array, Array], Outcome]:
     """The solver that `integrator` names, as a function of times t (m,) and states x (m, d) to fill."""
+    from scipy import integrate  # here, for it takes a third of a second that compiled integrators don't need
+
     tolerances = {
         name: value for name in ("rtol", "atol") if (value := getattr(integrator, name)) is not None
     }
-    solver_class = SOLVERS[integrator.method]
+    solver_class = getattr(integrate, SOLVERS[integrator.method])
+    says_why = solver_class is integrate.LSODA  # in a warning
 
     def run(t: Array, x: Array) -> Outcome:
         derivative = _Derivative(model)
         progress = _Progress(float(t[0]))
-        with warnings.catch_warnings(record=solver_class is LSODA) as said:  # LSODA fails in a warning
+        with warnings.catch_warnings(record=says_why) as said:
             try:
                 solver = solver_class(derivative, t[0], x[0], t[-1], **tolerances)
                 reason = _drive(solver, t, x, progress)
