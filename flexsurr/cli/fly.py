@@ -10,6 +10,7 @@ from flexsurr.cli.command import Job, command
 from flexsurr.cli.flying import airliner_of, forms_of, selected_networks
 from flexsurr.cli.frames import write_frame
 from flexsurr.config.flight import CONTROL_NAMES, FlightCondition
+from flexsurr.evaluation.airliner_cost import NETWORK
 from flexsurr.evaluation.airliner_flights import Flight, flown, outputs
 from flexsurr.evaluation.airliner_models import REFERENCE
 from flexsurr.evaluation.airliner_modes import airliner_modes, left_out_modes
@@ -32,15 +33,17 @@ def main(
     """Write eigenvalues and elastic modes, the doublets' time histories, and trims over the envelope."""
     plane = airliner_of(job)
     settings = plane.settings
-    network = selected_networks(selection, runs)["network"]
-    forms = forms_of(job, plane, {"network": network}, with_rebuild=False)
+    networks = {
+        label: network for label, network in selected_networks(selection, runs).items() if label == NETWORK
+    }
+    forms = forms_of(job, plane, networks, with_rebuild=False)
     cruise = {}
     for name, mapping in forms.items():
         try:
             cruise[name] = trim(plane.flying(mapping), settings.condition, settings.limits)
         except TrimNotFound as error:
             raise TrimNotFound(f"{name}: {error}") from None
-    write_frame(modes, airliner_modes(cruise[REFERENCE], cruise["network"]))
+    write_frame(modes, airliner_modes(cruise[REFERENCE], cruise.get(NETWORK)))
     write_frame(left_out, left_out_modes(plane))
     write_frame(elastic_modes, what_modes_are(plane))
     histories = []

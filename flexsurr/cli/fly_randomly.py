@@ -8,6 +8,7 @@ from flexsurr.cli.flying import airliner_of, forms_of, selected_networks
 from flexsurr.cli.frames import write_frame
 from flexsurr.config.flight import FlightCondition
 from flexsurr.evaluation.airliner_cost import (
+    NETWORK,
     OfEachFlight,
     airliner_cost,
     as_cost_rows,
@@ -35,7 +36,7 @@ def main(
     """Write every flight, every exceedance, their summaries, and the rows for cost.csv."""
     plane = airliner_of(job)
     networks = selected_networks(selection, runs)
-    network = networks["network"]
+    network = networks.get(NETWORK)
     compiled = forms_of(job, plane, networks, with_rebuild=True)
     forms: dict[str, CompiledMapping | OfEachFlight] = {
         ONE_MACH: lambda condition: frozen_at(plane, condition.mach, job["boundary_condition"]),
@@ -46,8 +47,8 @@ def main(
             plane,
             forms,
             random_flights(plane.settings, plane.limits, partial(_has_trim, plane, compiled[REFERENCE])),
-            (network.inputs.low, network.inputs.high),
-            TorchMap(network),
+            None if network is None else (network.inputs.low, network.inputs.high),
+            None if network is None else TorchMap(network),
         )
     write_frame(flights, flown)
     write_frame(exceedances, left)

@@ -35,13 +35,11 @@ def forms_of(
 
 
 def selected_networks(selection: Path, runs: Path) -> dict[str, NetworkMap]:
-    """The networks that `selection` names by their labels, "network" first.
+    """The networks that `selection` names by their labels, "network" first, if any has finished.
 
-    Raises StorageError where it names no "network", or a run that is none.
+    Raises StorageError where it names a run that is none.
     """
     chosen = read_json(selection)
-    if "network" not in chosen:
-        raise StorageError(f"{selection}: names no network")
     labels = sorted(chosen, key=lambda label: label != "network")
     return {
         label: _network(runs / chosen[label]["run_id"] / "weights.npz")

@@ -6,7 +6,7 @@ from typing import Any
 
 from flexsurr.cli.command import Job, command
 from flexsurr.cli.runs import read_run
-from flexsurr.storage import StorageError, write_json
+from flexsurr.storage import write_json
 from flexsurr.training import select
 from flexsurr.training.selection import select_maps
 
@@ -22,7 +22,7 @@ def main(job: Job, runs: Path, output: Path) -> None:
 
     The best surrogate of the sweep `default` goes by the name of its architecture (`hnn`), that of
     another sweep has the sweep's name added (`hnn_paper`). Of a study of maps there is the best for each of
-    the trials' labels, and StorageError where no network has finished, for none could be flown with.
+    the trials' labels.
     """
     selection: dict[str, dict[str, Any]] = {}
     for sweep, keys in job["sweeps"].items():
@@ -35,8 +35,8 @@ def main(job: Job, runs: Path, output: Path) -> None:
             for name, entry in chosen.items():
                 known_as = name if sweep == DEFAULT_SWEEP else f"{name}_{sweep}"
                 selection.setdefault(variant, {})[known_as] = entry
-    if job.get("maps") and "network" not in selection:
-        raise StorageError(f"{runs}: no network of {job['study']} has finished; its {SAYS_WHY}")
+    if job.get("maps") and selection and "network" not in selection:
+        log.warning("no network of %s has finished; its %s", job["study"], SAYS_WHY)
     if not selection:
         log.warning("no trial of %s has finished; its %s", job["study"], SAYS_WHY)
     write_json(output, selection)

@@ -10,6 +10,7 @@ import pandas as pd
 from flexsurr.config.flight import FlightCondition, FlightSettings
 from flexsurr.config.study import Integrator
 from flexsurr.evaluation.airliner_flights import (
+    EXCEEDANCE_COLUMNS,
     MOVED,
     Flight,
     flown,
@@ -101,7 +102,8 @@ def fly_all(
             flight.condition.mach,
             len(flown_by),
         )
-    return pd.DataFrame(rows), pd.concat(exceedances, ignore_index=True) if exceedances else pd.DataFrame()
+    none = pd.DataFrame(columns=EXCEEDANCE_COLUMNS)
+    return pd.DataFrame(rows), pd.concat(exceedances, ignore_index=True) if exceedances else none
 
 
 def _timed(

@@ -126,13 +126,15 @@ def peak_errors(
     return errors
 
 
+EXCEEDANCE_COLUMNS = ("flight", "control", "input", "samples", "outside", "worst")
+
+
 def limit_exceedances(
     trim: Trim, flight: Flight, trajectory: Trajectory, settings: FlightSettings, low: Array, high: Array
 ) -> pd.DataFrame:
     """How often each input of a network left the limits (25,) of its training during a flight.
 
-    Columns: flight, control, input, samples, outside (samples), worst (how far beyond, in halves of the
-    interval).
+    Columns `EXCEEDANCE_COLUMNS`: outside (samples), worst (how far beyond, in halves of the interval).
     """
     inputs = inputs_along(trim, flight, trajectory, settings)
     beyond = np.maximum(low - inputs, inputs - high)

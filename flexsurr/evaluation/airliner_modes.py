@@ -51,13 +51,16 @@ def elastic_modes(plane: Airliner) -> pd.DataFrame:
     return pd.DataFrame(rows).astype({"paper_mode": "Int64"})
 
 
-def airliner_modes(reference: Trim, surrogate: Trim) -> pd.DataFrame:
+def airliner_modes(reference: Trim, surrogate: Trim | None) -> pd.DataFrame:
     """Eigenvalues [1/s] of both, matched by the names their eigenvectors give them.
 
     Columns `MODE_COLUMNS`, and `error_percent` of the eigenvalue's magnitude. A mode that only one of them
-    has is NaN for the other.
+    has is NaN for the other, and so is everything of a surrogate that there is not.
     """
-    values = [{mode.name: mode.eigenvalue for mode in linearise(trim)} for trim in (reference, surrogate)]
+    values = [
+        {mode.name: mode.eigenvalue for mode in linearise(trim)} if trim is not None else {}
+        for trim in (reference, surrogate)
+    ]
     rows = []
     for name in dict.fromkeys([*values[0], *values[1]]):
         exact, found = (each.get(name, complex("nan")) for each in values)

@@ -147,10 +147,9 @@ def _histories(
     for ax in grid[max(len(shown) - columns, 0) : len(shown)]:
         ax.set_xlabel("time [s]")
         ax.tick_params(labelbottom=True)
-    handles = [
-        Line2D([], [], color=BLACK, linewidth=1.6, label="vortex lattice"),
-        Line2D([], [], color=ORANGE, linestyle=(0, (3, 2)), label="network"),
-    ]
+    handles = [Line2D([], [], color=BLACK, linewidth=1.6, label="vortex lattice")]
+    if len(network):
+        handles.append(Line2D([], [], color=ORANGE, linestyle=(0, (3, 2)), label="network"))
     figure.legend(handles=handles, loc="outside upper center", ncols=2)
     letter(grid[: len(shown)])
     return figure

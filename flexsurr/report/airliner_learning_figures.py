@@ -46,12 +46,14 @@ def coefficient_errors(errors: pd.DataFrame) -> Figure:
         value = _shown(name, errors[name].to_numpy(dtype=float))
         ax.semilogy(value, largest, ".", color=GREY, markersize=1.5, alpha=0.6, rasterized=True)
         order = np.argsort(value)
-        bins = np.array_split(order, min(BINS, len(order)))
+        bins = np.array_split(order, min(BINS, len(order))) if len(order) else []
         middle = [value[members].mean() for members in bins]
         ax.semilogy(middle, [np.sqrt(squares[members].mean()) for members in bins], color=BLUE)
         ax.set_xlabel(_label(name))
     for ax in grid.ravel()[len(inputs) :]:
         ax.set_visible(False)
+    if errors.empty:
+        figure.suptitle("no network has finished")
     figure.supylabel("error [% of the output's standard deviation]", fontsize="medium")
     handles = [
         Line2D([], [], color=GREY, marker=".", linestyle="", label="worst output of a held-out sample"),

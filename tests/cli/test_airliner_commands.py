@@ -8,8 +8,12 @@ import pandas as pd
 import pytest
 
 from flexsurr.aerodynamics.features import COEFFICIENTS
-from flexsurr.cli import accuracy, sample, score_map, select, store, train_map
+from flexsurr.cli import accuracy, fly, fly_randomly, sample, score_map, select, store, train_map
+from flexsurr.config.flight import DoubletTimes
 from flexsurr.config.settings import load
+from flexsurr.report.airliner_flight_figures import figure_19
+from flexsurr.report.airliner_learning_figures import coefficient_errors
+from flexsurr.report.tables import airliner_accuracy, airliner_modes, cost
 from flexsurr.storage import StorageError, read_samples
 from flexsurr.surrogates import load_map
 from flexsurr.tracking.store import read_store
@@ -85,15 +89,40 @@ def test_runs_are_on_the_tracking_page(results):
     assert {run.data.tags.get("flexsurr.run_id") for run in runs} >= set(PLAN.runs)
 
 
-def test_without_a_network_that_finished_nothing_is_selected(results, tmp_path):
+@pytest.fixture
+def without_networks(results, tmp_path) -> Path:
+    """A selection of runs of which no network has finished, and of the others all."""
     runs = tmp_path / "runs"
-    for run_id in PLAN.runs:
+    for run_id, run in PLAN.runs.items():
         figures = json.loads((results / "runs" / run_id / "metrics.json").read_text())
-        figures["status"] = "failed"
+        if run.trial.architecture == "network":
+            figures["status"] = "failed"
         (runs / run_id).mkdir(parents=True)
         (runs / run_id / "metrics.json").write_text(json.dumps(figures))
-    with pytest.raises(StorageError, match="no network of airliner has finished"):
-        choose(runs, tmp_path / "s.json")
+    choose(runs, tmp_path / "selected.json")
+    return tmp_path / "selected.json"
+
+
+def test_without_a_network_that_finished_the_lattice_flies_alone(results, without_networks, tmp_path):
+    names = ("modes", "left_out", "elastic_modes", "doublets", "trims")
+    made = [tmp_path / f"{name}.parquet" for name in names]
+    fly.main(PLAN.fly(), without_networks, results / "runs", *made)
+    doublets = pd.read_parquet(tmp_path / "doublets.parquet")
+    assert set(doublets["model"]) == {"vlm_frozen", "quadratic"}
+    modes = airliner_modes(pd.read_parquet(tmp_path / "modes.parquet"))
+    assert modes["reference_real"].notna().all()
+    assert modes["surrogate_real"].isna().all()
+    names = ("flights", "exceedances", "cost", "rows", "limits")
+    made = [tmp_path / f"{name}.parquet" for name in names]
+    fly_randomly.main(PLAN.fly(), without_networks, results / "runs", *made)
+    rows = cost(pd.read_parquet(tmp_path / "rows.parquet"))
+    assert set(rows["model"]) == {"vlm_rebuild", "vlm_frozen", "vlm_frozen_one_mach", "quadratic"}
+    assert len(pd.read_parquet(tmp_path / "limits.parquet")) == 0
+    files = (tmp_path / "accuracy.parquet", tmp_path / "errors.parquet")
+    accuracy.main(PLAN.accuracy(), without_networks, results / "runs", results, *files)
+    assert set(airliner_accuracy(pd.read_parquet(files[0]))["model"]) == {"linear"}
+    figure_19(doublets, DoubletTimes(**PLAN.fly()["flight"]["doublet"]))
+    coefficient_errors(pd.read_parquet(files[1]))
 
 
 def test_samples_of_another_configuration_are_refused(results, tmp_path):

@@ -3,11 +3,8 @@
 import json
 from pathlib import Path
 
-import pytest
-
 from flexsurr.cli.flying import airliner_of, selected_networks
 from flexsurr.config.settings import load
-from flexsurr.storage import StorageError
 from flexsurr.workflow.plan import Plan
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -30,8 +27,7 @@ def test_a_job_is_plain_data_from_which_the_airliner_comes_back():
     assert job["boundary_condition"] == study.study.dataset.boundary_condition
 
 
-def test_a_selection_without_a_network_is_refused(tmp_path: Path):
+def test_a_selection_without_a_network_has_none_to_fly_with(tmp_path: Path):
     selection = tmp_path / "airliner.json"
-    selection.write_text(json.dumps({"linear": {"run_id": "airliner-linear-0"}}))
-    with pytest.raises(StorageError, match="names no network"):
-        selected_networks(selection, tmp_path)
+    selection.write_text(json.dumps({"linear": {"run_id": "linear-0", "architecture": "linear"}}))
+    assert selected_networks(selection, tmp_path) == {}
