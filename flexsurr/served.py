@@ -16,7 +16,7 @@ import numpy as np
 import pandas as pd
 
 from flexsurr.library import LoadedSurrogate, load_surrogate
-from flexsurr.surrogates import Hamiltonian
+from flexsurr.surrogates import Hamiltonian, LearnedMap, SurrogateFileError, load_map
 
 RESPONSE = "response"
 """The column that says to which row of the input a row of a response belongs, counted from 0."""
@@ -31,6 +31,10 @@ class ServedField:
     """
 
     defaults: Mapping[str, float] = {"duration_s": DURATION_S, "step_s": STEP_S}
+    rows = (
+        "Rows of initial states in, their free responses out; `params` may hold duration_s and step_s. "
+        "`flexsurr.load_surrogate` takes the same file, and forces on it as well."
+    )
 
     def __init__(self, surrogate: LoadedSurrogate) -> None:
         self._surrogate = surrogate
@@ -69,15 +73,65 @@ class ServedField:
         return pd.concat(tables, ignore_index=True)
 
 
-def served(path: str | Path) -> ServedField:
-    """The surrogate that training wrote to `path`.
+class ServedMap:
+    """A learned map y = g(u): rows of inputs in, a row of outputs for each. It has no parameters."""
+
+    defaults: Mapping[str, float] = {}
+    rows = "Rows of inputs in, a row of outputs for each."
+
+    def __init__(self, learned: LearnedMap) -> None:
+        self._learned = learned
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """The names of the map's inputs."""
+        return self._learned.inputs.names
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """The names of its outputs."""
+        return self._learned.output_names
+
+    @property
+    def example(self) -> pd.DataFrame:
+        """One row of inputs, within the intervals of the training."""
+        inputs = self._learned.inputs
+        return _row(self.inputs, inputs.origin + 0.25 * inputs.half)
+
+    def __str__(self) -> str:
+        """What it is made of, and where it was trained."""
+        learned, inputs = self._learned, self._learned.inputs
+        width = max(map(len, self.inputs))
+        return "\n".join(
+            [
+                f"{learned.form}, {learned.parameter_count} parameters: "
+                f"{len(self.outputs)} outputs of {len(self.inputs)} inputs",
+                "trained with",
+                *(
+                    f"  {name:<{width}}  {low:.4g} to {high:.4g}"
+                    for name, low, high in zip(inputs.names, inputs.low, inputs.high, strict=True)
+                ),
+            ]
+        )
+
+    def predict(self, model_input: pd.DataFrame, params: Mapping[str, Any] | None = None) -> pd.DataFrame:
+        """The outputs at rows of inputs, which are found by their names."""
+        u = model_input[list(self.inputs)].to_numpy(np.float64)
+        return pd.DataFrame(self._learned(u), columns=list(self.outputs))
+
+
+def served(path: str | Path) -> ServedField | ServedMap:
+    """The surrogate or the map that training wrote to `path`.
 
     Raises SurrogateFileError for a damaged or foreign file, OSError where there is none.
     """
-    return ServedField(load_surrogate(path))
+    try:
+        return ServedMap(load_map(path))
+    except SurrogateFileError:  # a field's, or none at all: the other reader says what is wrong with it
+        return ServedField(load_surrogate(path))
 
 
-def card(model: ServedField, name: str, metrics: Mapping[str, Any]) -> str:
+def card(model: ServedField | ServedMap, name: str, metrics: Mapping[str, Any]) -> str:
     """The model card in Markdown: what it stands for, its ranges, its errors, and how it is loaded."""
     errors = [
         f"| {error.replace('_', ' ')} | {value:.3g} |"
@@ -106,9 +160,7 @@ def card(model: ServedField, name: str, metrics: Mapping[str, Any]) -> str:
             f"model.predict(pandas.DataFrame({{{columns}{more}}}))",
             "```",
             "",
-            "Rows of initial states in, their free responses out; `params` may hold duration_s and step_s. "
-            "`flexsurr.load_surrogate` takes the same file, and forces on it as well. Beyond the ranges "
-            "above its errors are not known.",
+            f"{model.rows} Beyond the ranges above its errors are not known.",
         ]
     )
 
@@ -121,5 +173,5 @@ def _row(names: tuple[str, ...], values: Any) -> pd.DataFrame:
     return pd.DataFrame([values], columns=list(names))
 
 
-def _load_pyfunc(path: str) -> ServedField:
+def _load_pyfunc(path: str) -> ServedField | ServedMap:
     return served(path)

@@ -20,6 +20,9 @@ from flexsurr.training.selection import ERROR
 
 log = logging.getLogger(__name__)
 
+MAP = "network"
+"""The label of the chosen map of a study of samples."""
+
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """The results, and what is to be done about what the page lacks."""
@@ -119,9 +122,13 @@ def _register_one(page: Page, name: str, study: str, weights: Path, entry: Mappi
 
 
 def _chosen(selection: Path) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Of each variant the run whose long response errs least."""
+    """Of each variant the run whose long response errs least; of maps the network that flies."""
     study = selection.stem
     for of_what, chosen in read_json(selection).items():
+        if "run_id" in chosen:
+            if of_what == MAP:
+                yield f"{study}-{MAP}", chosen
+            continue
         named = [entry for entry in chosen.values() if isinstance(entry, dict)]
         if named:
             yield f"{study}-{of_what}", min(named, key=lambda entry: entry[ERROR])

@@ -13,7 +13,7 @@ from run_folders import described, write_run
 
 import flexsurr
 from flexsurr.cli import store, track
-from flexsurr.surrogates import PolynomialHamiltonian
+from flexsurr.surrogates import Intervals, PolynomialHamiltonian, PolynomialMap, save_map
 from flexsurr.surrogates.scaling import PairScaling
 from flexsurr.tracking.store import read_store, store_uri
 from flexsurr.tracking.trial import tracked
@@ -151,3 +151,38 @@ def test_a_moved_folder_keeps_its_champion(results, tmp_path, loaded):
     finally:
         away.rename(results)
     assert response["energy_J"].iloc[0] == pytest.approx(2.0)
+
+
+def test_of_maps_the_network_that_flies_is_the_champion(tmp_path):
+    """It predicts what the map in its file does, row by row, whatever the order of the columns."""
+    inputs = Intervals(("mach", "alpha"), np.array([0.6, -0.1]), np.array([0.8, 0.2]))
+    exponents = np.array([[0, 0], [1, 0], [1, 1]])
+    learned = PolynomialMap(
+        inputs, ("lift", "drag"), exponents, np.array([[1.0, 2.0], [0.5, 0.1], [3.0, 0.0]])
+    )
+    results = tmp_path / "results"
+    store.main({"uri": None, "studies": ["cantilever"]}, results / "mlflow/store.json")
+    (results / "runs/network-1").mkdir(parents=True)
+    save_map(learned, results / "runs/network-1/weights.npz")
+    folder = write_run(results / "runs", "network-1")
+    with tracked(read_store(results / "mlflow/store.json"), described("network-1"), folder) as trial:
+        trial.keep()
+    chosen = {label: {"run_id": "network-1", "validation_nmse": 2e-7} for label in ("network", "linear")}
+    (results / "selected").mkdir()
+    (results / "selected/cantilever.json").write_text(json.dumps(chosen))
+    track.main(results, sync=False, uri=None)
+    uri = store_uri(None, results / "mlflow")
+    (name,) = [model.name for model in MlflowClient(uri).search_registered_models()]
+    assert name == "cantilever-network"
+    mlflow.set_tracking_uri(uri)
+    try:
+        champion = mlflow.pyfunc.load_model(f"models:/{name}@champion")
+        u = pd.DataFrame({"alpha": [0.0, 0.1], "mach": [0.7, 0.65]})
+        predicted = champion.predict(u)
+    finally:
+        mlflow.set_tracking_uri(None)
+    assert list(predicted.columns) == ["lift", "drag"]
+    np.testing.assert_array_equal(predicted, learned(u[["mach", "alpha"]].to_numpy()))
+    card = MlflowClient(uri).get_model_version_by_alias(name, "champion").description
+    for words in ("2 outputs of 2 inputs", "0.6 to 0.8", "2e-07", f"models:/{name}@champion"):
+        assert words in card
