@@ -24,6 +24,7 @@ TARGETS = ("results/selected/cantilever.json", "results/tables/cantilever/traini
 VARIANTS = 2
 PRESET = "config/presets/many.yaml"
 JOB_EACH = {"trials_per_job": 1, "shards_per_job": 1}
+UNSAID = {"trials_per_job": None, "shards_per_job": None}
 
 
 def sweep(trials: int) -> dict:
@@ -39,7 +40,7 @@ def sweep(trials: int) -> dict:
     return {"search": "grid", "spaces": [space]}
 
 
-def prepare(root: Path, trials: int, shards: int, batches: dict[str, int]) -> None:
+def prepare(root: Path, trials: int, shards: int, batches: dict[str, int | None]) -> None:
     """Write the configuration of a sweep of so many trials on datasets of so many shards."""
     for part in PARTS:
         source = PROJECT / part
@@ -82,16 +83,16 @@ def main() -> None:
     """Print a row for each number of trials, in batches and in a job each."""
     if len(sys.argv) > 1:
         trials, shards = map(int, sys.argv[1:3])
-        cases = [(trials, shards, {}), (trials, shards, JOB_EACH)]
+        cases = [(trials, shards, UNSAID), (trials, shards, JOB_EACH)]
     else:
-        cases = [(count, 4, {}) for count in (100, 1_000, 10_000)]
+        cases = [(count, 4, UNSAID) for count in (100, 1_000, 10_000)]
         cases += [(count, 4, JOB_EACH) for count in (100, 1_000)]
     print("trials  shards  batches    jobs  wall s  processor s      MB")
     for trials, shards, batches in cases:
         with tempfile.TemporaryDirectory() as folder:
             prepare(Path(folder), trials, shards, batches)
             wall_s, processor_s, memory, jobs = plan(Path(folder))
-        batched = "no" if batches else "yes"
+        batched = "no" if batches is JOB_EACH else "yes"
         costs = f"{wall_s:>7.1f} {processor_s:>12.1f} {memory:>7.0f}"
         print(f"{trials:>6} {shards:>7} {batched:>8} {jobs:>7} {costs}", flush=True)
 

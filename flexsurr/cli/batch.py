@@ -20,14 +20,19 @@ from flexsurr.workflow.code_digest import code_digest
 
 log = logging.getLogger(__name__)
 
-OF_A_RUN = ("parameters.json", "fit.json", "history.parquet", "weights.npz", "best.npz", "metrics.json")
+TRAINED = ("parameters.json", "fit.json", "history.parquet", "weights.npz", "best.npz")
+JUDGED = ("fit.json", "weights.npz", "best.npz")
 
 
 @dataclass(frozen=True)
 class Item:
-    """One of them: its name, its values, and how it is made. Files are named below the results."""
+    """One of them: its name, the command that makes one alone, its values, and how it is made.
+
+    Files are named below the results.
+    """
 
     name: str
+    command: str
     job: Mapping[str, Any]
     reads: Sequence[str]
     leaves: Sequence[str]
@@ -36,18 +41,26 @@ class Item:
 
 
 def make_all(
-    items: Sequence[Item], code: str, results: Path, output: Path, refused: tuple[type[Exception], ...] = ()
+    items: Sequence[Item], results: Path, output: Path, refused: tuple[type[Exception], ...] = ()
 ) -> None:
-    """Make every item that is not there as the code of the command `code` makes it; their names to `output`.
+    """Make every item that is not there as its command makes it now; what they leave to `output`.
 
-    What one of them raises of the types `refused` ends that one alone; StorageError names them at the end.
+    What one of them raises of the types `refused` ends that one alone, and what reads its files;
+    StorageError names them at the end.
     """
     expected: tuple[type[Exception], ...] = (StorageError, *refused)
-    digest = code_digest(f"flexsurr.cli.{code}")
+    code = cache(lambda command: code_digest(f"flexsurr.cli.{command}"))
     contents = cache(lambda file: hashlib.sha256(read_bytes(results / file)).hexdigest())
     problems = []
     for number, item in enumerate(items, start=1):
-        made_from = {"code": digest, "job": item.job, "reads": {file: contents(file) for file in item.reads}}
+        if lacking := [file for file in item.reads if not (results / file).is_file()]:
+            problems.append(f"{item.name}: {lacking[0]} is missing")
+            continue
+        made_from = {
+            "code": code(item.command),
+            "job": item.job,
+            "reads": {file: contents(file) for file in item.reads},
+        }
         note = hashlib.sha256(json.dumps(made_from, sort_keys=True).encode()).hexdigest()
         if all((results / file).is_file() for file in item.leaves) and _noted(results / item.note) == note:
             continue
@@ -62,7 +75,7 @@ def make_all(
         write_json(results / item.note, {"made_from": note})
     if problems:
         raise StorageError("\n".join(problems))
-    write_json(output, {"made": [item.name for item in items]})
+    write_json(output, {"made": [file for item in items for file in item.leaves]})
 
 
 def _noted(path: Path) -> str | None:
@@ -75,28 +88,48 @@ def _noted(path: Path) -> str | None:
 
 
 def trials_of(
-    job: Job, results: Path, make: Callable[[Job, Path, list[Path], list[Path]], None]
+    job: Job,
+    results: Path,
+    train: Callable[[Job, list[Path], Path], None],
+    score: Callable[[Job, Path, list[Path]], None],
+    commands: tuple[str, str],
 ) -> list[Item]:
-    """The trials of a batch, each made by `make(job, folder, trains on, scored on)`."""
+    """The trials of a batch: `train(job, trains on, folder)` and `score(job, folder, scored on)` of each.
 
-    def item(key: str, trial: Job) -> Item:
+    `commands` are those that train and score one alone: what is judged otherwise is not trained again.
+    """
+    items = []
+    for key, trial in job["trials"].items():
         folder = f"runs/{key}"
-        read = [[results / file for file in trial[which]] for which in ("trains_on", "scored_on")]
-        return Item(
-            key,
-            trial,
-            [*trial["trains_on"], *trial["scored_on"]],
-            [f"{folder}/{name}" for name in OF_A_RUN],
-            f"{folder}/made.json",
-            partial(make, trial, results / folder, *read),
+        trains_on, scored_on = (
+            [results / file for file in trial[which]] for which in ("trains_on", "scored_on")
         )
+        items += [
+            Item(
+                key,
+                commands[0],
+                trial["train"],
+                trial["trains_on"],
+                [f"{folder}/{name}" for name in TRAINED],
+                f"{folder}/trained.json",
+                partial(train, trial["train"], trains_on, results / folder),
+            ),
+            Item(
+                f"{key}, its score",
+                commands[1],
+                trial["score"],
+                [*(f"{folder}/{name}" for name in JUDGED), *trial["scored_on"]],
+                [f"{folder}/metrics.json"],
+                f"{folder}/scored.json",
+                partial(score, trial["score"], results / folder, scored_on),
+            ),
+        ]
+    return items
 
-    return [item(key, trial) for key, trial in job["trials"].items()]
 
-
-def shards_of(job: Job, results: Path, make: Callable[[Job, Path], None]) -> list[Item]:
-    """The shards of a batch, each made by `make(job, file)`."""
+def shards_of(job: Job, results: Path, make: Callable[[Job, Path], None], command: str) -> list[Item]:
+    """The shards of a batch, each made by `make(job, file)` as `command` makes one alone."""
     return [
-        Item(file, shard, (), [file], f"{file}.json", partial(make, shard, results / file))
+        Item(file, command, shard, (), [file], f"{file}.json", partial(make, shard, results / file))
         for file, shard in job["shards"].items()
     ]

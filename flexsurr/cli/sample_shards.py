@@ -8,8 +8,8 @@ from flexsurr.cli.sample import main as sample
 
 
 def main(job: Job, results: Path, output: Path) -> None:
-    """Make the shards of the job below `results`, and write their names to `output`."""
-    make_all(shards_of(job, results, sample), "sample_shards", results, output)
+    """Make the shards of the job below `results`, and write what is made to `output`."""
+    make_all(shards_of(job, results, sample, "sample"), results, output)
 
 
 if __name__ == "__main__":

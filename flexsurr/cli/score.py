@@ -1,7 +1,9 @@
 """Score one run: its field on held-out samples, and long responses that no training has seen."""
 
+import json
 import logging
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -58,6 +60,13 @@ def _setting(job: Job) -> dict[str, Any]:
 
 def _beside_reference(job: Job) -> Errors:
     """Errors of long responses, from the reference model's."""
+    return _beside_reference_of(json.dumps(job, sort_keys=True))
+
+
+@cache
+def _beside_reference_of(values: str) -> Errors:
+    """The same of a job as JSON: the trials of a batch have the same references."""
+    job = json.loads(values)
     study, variant = part_of(Study, job["part"]), job["variant"]
     basis = reduce(Structure.model_validate(job["structure"]), study.reduction)
     references = long_responses(study, basis, variant)

@@ -11,8 +11,8 @@ REFUSED = (EquilibriumNotFound, ArithmeticError)
 
 
 def main(job: Job, results: Path, output: Path) -> None:
-    """Make the shards of the job below `results`, and write their names to `output`."""
-    make_all(shards_of(job, results, simulate), "shards", results, output, REFUSED)
+    """Make the shards of the job below `results`, and write what is made to `output`."""
+    make_all(shards_of(job, results, simulate, "simulate"), results, output, REFUSED)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Write one table of a study, as a file for programs and as a page for people."""
+"""Write tables of a study, each as a file for programs and as a page for people."""
 
 from pathlib import Path
 
@@ -9,12 +9,13 @@ from flexsurr.report.pages import save_page
 from flexsurr.report.tables import TABULATE, save_table
 
 
-def main(job: Job, results: Path, caption: Path, output: Path) -> None:
-    """Write the page of the job's table, with its caption, to `output`, and its CSV beside it."""
-    name = job["table"]
-    frame = TABULATE[name](*arguments(job, results))
-    save_table(frame, output.with_suffix(".csv"))
-    save_page(frame, TABLES[name].title, text_of(caption), output)
+def main(job: Job, results: Path, captions: list[Path], folder: Path) -> None:
+    """Write CSV and page of each table of the job to `folder`; `captions` are named as the tables."""
+    texts = {caption.stem: text_of(caption) for caption in captions}
+    for name, table in job.items():
+        frame = TABULATE[name](*arguments(table, results))
+        save_table(frame, folder / f"{name}.csv")
+        save_page(frame, TABLES[name].title, texts[name], folder / f"{name}.html")
 
 
 if __name__ == "__main__":
@@ -22,7 +23,7 @@ if __name__ == "__main__":
         main,
         {
             "results": "the folder of all results",
-            "caption": "what to see in it",
-            "output": "the page",
+            "captions": "what to see in them …",
+            "folder": "of the tables",
         },
     )

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from flexsurr.beam import EquilibriumNotFound
-from flexsurr.cli.batch import make_all, trials_of
+from flexsurr.cli.batch import JUDGED, make_all, trials_of
 from flexsurr.cli.command import Job, command
 from flexsurr.cli.score import main as score
 from flexsurr.cli.train import main as train
@@ -12,14 +12,17 @@ REFUSED = (EquilibriumNotFound, ArithmeticError)
 
 
 def main(job: Job, results: Path, store: Path, output: Path) -> None:
-    """Make the runs of the job below `results`, and write their names to `output`."""
+    """Make the runs of the job below `results`, and write what is made to `output`."""
 
-    def make(trial: Job, folder: Path, trains_on: list[Path], scored_on: list[Path]) -> None:
-        train(trial["train"], sorted({file.parent for file in trains_on}), store, folder)
-        fit, weights, best = (folder / name for name in ("fit.json", "weights.npz", "best.npz"))
-        score(trial["score"], fit, weights, best, scored_on[0], folder / "metrics.json")
+    def trained(trial: Job, trains_on: list[Path], folder: Path) -> None:
+        train(trial, sorted({file.parent for file in trains_on}), store, folder)
 
-    make_all(trials_of(job, results, make), "trials", results, output, REFUSED)
+    def scored(trial: Job, folder: Path, scored_on: list[Path]) -> None:
+        fit, weights, best = (folder / name for name in JUDGED)
+        score(trial, fit, weights, best, scored_on[0], folder / "metrics.json")
+
+    items = trials_of(job, results, trained, scored, ("train", "score"))
+    make_all(items, results, output, REFUSED)
 
 
 if __name__ == "__main__":

@@ -48,9 +48,11 @@ class Batches(Record):
     """How much small work one job does, one after another."""
 
     trials_per_job: Count | None = None
-    """Trials, each with its score. None: a job each up to 200 of a study; more make 128 jobs."""
+    """Trials of fields, each with its score. None: a job each up to 200 of a study. Never over 128 jobs."""
+    maps_per_job: Count | None = None
+    """The same of maps, the trials of a study of samples: they take minutes where others take seconds."""
     shards_per_job: Count | None = None
-    """Shards of a dataset. None: a job each up to 200; more make 128 jobs."""
+    """Shards of a dataset. None: a job each up to 200. Never over 128 jobs."""
 
 
 class Settings(Record):

@@ -141,6 +141,6 @@ class FilesPlan(FieldPlan):
         return {"study": self.name, "part": values_of(self.resolved.study, (*ROLLOUTS, "rollouts.repeats"))}
 
     @property
-    def evaluated(self) -> list[str]:
-        """The names of the files that its evaluation makes."""
-        return ["rollouts", "rollout_curves", "rollout_cost"]
+    def evaluation(self) -> dict[str, list[str]]:
+        """The names of the files that its evaluation makes, by the rule that makes them."""
+        return {"rollouts": ["rollouts", "rollout_curves"], "rollout_cost": ["rollout_cost"]}

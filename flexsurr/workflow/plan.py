@@ -75,8 +75,12 @@ class Plan:
     @cached_property
     def trial_batches(self) -> dict[str, dict[str, list[str]]]:
         """The run_ids of each batch of each study; none of a study whose trials have a job each."""
-        per_job = self.settings.batches.trials_per_job
-        return {name: batches_of_runs(list(study.runs), per_job) for name, study in self.studies.items()}
+        batches = self.settings.batches
+        per_job = dict.fromkeys(self.studies, batches.trials_per_job)
+        per_job |= dict.fromkeys(self.of_source("samples"), batches.maps_per_job)
+        return {
+            name: batches_of_runs(list(study.runs), per_job[name]) for name, study in self.studies.items()
+        }
 
     def batch_of_trials(self, study: str, batch: str) -> Job:
         """The trials of one batch: of each its training and its score, and the files that they read."""
@@ -145,13 +149,38 @@ class Plan:
         """The tables of one study."""
         return [name for name, table in TABLES.items() if self.studies[study].shows(table)]
 
-    def draw(self, study: str, figure: str) -> Job:
-        """One figure."""
-        return {"figure": figure, **self._reads(study, FIGURES[figure])}
+    def made_together(self, study: str, products: Mapping[str, Product]) -> dict[str, list[str]]:
+        """The figures or tables of one study that one job makes, by the rule whose files they show.
 
-    def tabulate(self, study: str, table: str) -> Job:
-        """One table."""
-        return {"table": table, **self._reads(study, TABLES[table])}
+        To start Python takes longer than to draw a figure. What the structure or the aircraft is enough for
+        goes by the name `design`.
+        """
+        together: dict[str, list[str]] = {}
+        for name, product in products.items():
+            if self.studies[study].shows(product):
+                together.setdefault(self._shown_by(study, product), []).append(name)
+        return together
+
+    def shown(self, study: str, products: Mapping[str, Product], names: Iterable[str]) -> list[str]:
+        """The files below the results that these figures or tables of one study read."""
+        return list(dict.fromkeys(file for name in names for file in self.read_by(study, products[name])))
+
+    def _shown_by(self, study: str, product: Product) -> str:
+        files = self.read_by(study, product)
+        if not files:
+            return "design"
+        if files[-1].startswith("runs/"):
+            return "runs"
+        names = {Path(file).stem for file in files}
+        return next(rule for rule, made in self.studies[study].evaluation.items() if names <= set(made))
+
+    def draw(self, study: str, shown: str) -> Job:
+        """The figures of one study that show what the rule `shown` has made."""
+        return {name: self._reads(study, FIGURES[name]) for name in self.made_together(study, FIGURES)[shown]}
+
+    def tabulate(self, study: str, shown: str) -> Job:
+        """The tables of one study that show what the rule `shown` has made."""
+        return {name: self._reads(study, TABLES[name]) for name in self.made_together(study, TABLES)[shown]}
 
     def read_by(self, study: str, product: Product) -> list[str]:
         """The files below the results that a figure or table of one study reads."""
@@ -165,8 +194,8 @@ class Plan:
             return [file for name in self._relatives(study) for file in self.files(name, "metrics")]
         if read in OF_RUNS:
             return [f"runs/{key}/{OF_RUNS[read]}" for key in self.studies[study].runs]
-        evaluated = self.studies[study].evaluated
-        found = [f"evaluation/{study}/{name}.parquet" for name in evaluated if fnmatch(name, read)]
+        names = [name for made in self.studies[study].evaluation.values() for name in made]
+        found = [f"evaluation/{study}/{name}.parquet" for name in names if fnmatch(name, read)]
         if not found:
             raise ValueError(f"no rule makes {read}")
         return found

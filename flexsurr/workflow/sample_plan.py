@@ -17,21 +17,12 @@ _DRAWN = {
 }
 """How the samples of each name are drawn."""
 
-EVALUATED = (
-    "accuracy",
-    "errors",
-    "modes",
-    "elastic_modes",
-    "left_out_modes",
-    "doublets",
-    "trims",
-    "flights",
-    "exceedances",
-    "limits",
-    "flight_cost",
-    "cost-manoeuvre",
-)
-"""The names of the files that its evaluation makes."""
+EVALUATION = {
+    "accuracy": ["accuracy", "errors"],
+    "fly": ["modes", "elastic_modes", "left_out_modes", "doublets", "trims"],
+    "fly_randomly": ["flights", "exceedances", "limits", "flight_cost", "cost-manoeuvre"],
+}
+"""The names of the files that its evaluation makes, by the rule that makes them."""
 
 
 class SamplePlan(StudyPlan):
@@ -64,9 +55,9 @@ class SamplePlan(StudyPlan):
         return run_id(trial, self.name, data, self._split(data)), Run(self.name, data, DEFAULT, trial)
 
     @property
-    def evaluated(self) -> list[str]:
-        """The names of the files that its evaluation makes."""
-        return list(EVALUATED)
+    def evaluation(self) -> dict[str, list[str]]:
+        """The names of the files that its evaluation makes, by the rule that makes them."""
+        return EVALUATION
 
     def shards(self, data: str) -> int:
         """Number of shards of the samples called `data`."""

@@ -88,8 +88,8 @@ class StudyPlan(ABC):
 
     @property
     @abstractmethod
-    def evaluated(self) -> list[str]:
-        """The names of the files that its evaluation makes."""
+    def evaluation(self) -> dict[str, list[str]]:
+        """The names of the files that its evaluation makes, by the rule that makes them."""
 
     @abstractmethod
     def shards(self, data: str) -> int:

@@ -144,14 +144,16 @@ class TrajectoryPlan(FieldPlan):
         return data_folder(variant, self.resolved.study.evaluation.learned_load.dataset)
 
     @property
-    def evaluated(self) -> list[str]:
-        """The names of the files that its evaluation makes."""
-        names = ["statics", "frequencies", "validation"]
+    def evaluation(self) -> dict[str, list[str]]:
+        """The names of the files that its evaluation makes, by the rule that makes them."""
+        made: dict[str, list[str]] = {"statics": ["statics", "frequencies"], "validation": ["validation"]}
+        made |= {"responses": [], "learn_load": [], "evaluate": []}
         for variant in self.variants:
-            names += [f"response-{variant}-{response}" for response in DRAWN_RESPONSES]
-            names += [f"{kind}-{variant}" for kind in ("energy", "learned_loads")]
-            names += [f"cost-{variant}-{response}" for response in RESPONSE_KINDS]
-        return names
+            made["responses"] += [f"response-{variant}-{response}" for response in DRAWN_RESPONSES]
+            made["responses"].append(f"energy-{variant}")
+            made["learn_load"].append(f"learned_loads-{variant}")
+            made["evaluate"] += [f"cost-{variant}-{response}" for response in RESPONSE_KINDS]
+        return made
 
     def shows(self, product: Product) -> bool:
         """Whether a figure or table is made of this study: some are of some structures alone."""

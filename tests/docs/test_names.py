@@ -49,6 +49,10 @@ SOURCES = sources()
 WORDS = {word for text in SOURCES.values() for word in re.findall(r"\w+", text)}
 FILE_NAMES = {path.name for path in TOP.rglob("*") if not {".venv", ".git", ".snakemake"} & set(path.parts)}
 RULES = {name for text in SOURCES.values() for name in re.findall(r"^ *rule (\w+):", text, re.MULTILINE)}
+# those that are made in a loop go by what their names begin with
+RULES |= {
+    name for text in SOURCES.values() for name in re.findall(r'^ *f"(\w+)_\{study\}', text, re.MULTILINE)
+}
 TARGETS = set(re.findall(r"^([\w-]+):", SOURCES[TOP / "Makefile"], re.MULTILINE))
 
 

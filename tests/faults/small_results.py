@@ -62,5 +62,5 @@ class Results:
 
     def tabulate(self, table: str) -> None:
         caption = REPOSITORY / "workflow/report" / f"{table}.rst"
-        output = self.root / "tables" / STUDY / f"{table}.html"
-        tabulate.main(self.job("tabulate", STUDY, table), self.root, caption, output)
+        job = {table: self.job("tabulate", STUDY, "statics")[table]}
+        tabulate.main(job, self.root, [caption], self.root / "tables" / STUDY)

@@ -9,6 +9,7 @@ import yaml
 
 from flexsurr.config.settings import load
 from flexsurr.evaluation.published import is_of_the_recipe
+from flexsurr.report.catalogue import FIGURES, TABLES
 from flexsurr.workflow.plan import Plan
 from flexsurr.workflow.trajectory_plan import TrajectoryPlan
 
@@ -220,6 +221,47 @@ def test_the_figure_of_architectures_sees_every_study_of_the_same_structure(root
     assert len(p.files(BEAM, "relatives")) == len(beam(p).runs)
     assert "architecture_errors" in p.figures("wing")
     assert "architecture_errors" not in p.figures(BEAM)
+
+
+@pytest.mark.parametrize("products", [FIGURES, TABLES])
+def test_every_product_is_made_by_one_job_that_waits_for_the_files_of_one_rule(products):
+    p = Plan(load(REPOSITORY, ["config/config.yaml"]))
+    for study in p.studies:
+        together = p.made_together(study, products)
+        names = [name for group in together.values() for name in group]
+        assert sorted(names) == sorted(p.figures(study) if products is FIGURES else p.tables(study))
+        for shown, group in together.items():
+            files = p.shown(study, products, group)
+            made = {
+                f"evaluation/{study}/{name}.parquet" for name in p.studies[study].evaluation.get(shown, ())
+            }
+            match shown:
+                case "design":
+                    assert files == []
+                case "runs":
+                    assert all(file.startswith("runs/") for file in files)
+                case _:
+                    assert set() < set(files) <= made
+            assert set(p.job("draw" if products is FIGURES else "tabulate", study, shown)) == set(group)
+
+
+def test_a_trial_of_a_field_shares_a_job_and_one_of_a_map_has_its_own():
+    p = Plan(load(REPOSITORY, ["config/config.yaml"]))
+    assert p.trial_batches["airliner"] == {}
+    assert max(map(len, p.trial_batches[BEAM].values())) > 1
+
+
+def test_the_full_preset_times_every_baseline_on_every_simulation():
+    p = Plan(load(REPOSITORY, ["config/config.yaml", "config/presets/full.yaml"]))
+    assert set(p.studies) == set(Plan(load(REPOSITORY, ["config/config.yaml"])).studies)
+    for study in (BEAM, "wing"):
+        evaluation = p.studies[study].resolved.study.evaluation
+        described = evaluation.described_simulations
+        assert {described.as_printed, described.hamiltonian, evaluation.scipy_simulations} == {
+            evaluation.simulations
+        }
+    flights = p.studies["airliner"].resolved.study.flight.random_flights
+    assert flights.rebuild_flights == 3 * flights.of_each_doublet
 
 
 def test_the_papers_preset_trains_its_recipes_on_its_data():

@@ -6,6 +6,8 @@ from pathlib import Path
 import pytest
 from project import Project
 
+from flexsurr.cli.alone import alone_in
+
 REPOSITORY = Path(__file__).resolve().parents[2]
 PARTS = ("Snakefile", "workflow", "profiles", "config", "examples")
 STATE = ("results", ".snakemake")
@@ -19,9 +21,9 @@ def make_project(tmp_path_factory):
     """
     made: list[Project] = []
 
-    def make(start_from: Project | None = None) -> Project:
+    def make(start_from: Project | None = None, root: Path | None = None) -> Project:
         """A new project, or one that is where `start_from` has come to."""
-        root = tmp_path_factory.mktemp("project")
+        root = root or tmp_path_factory.mktemp("project")
         for part in (*PARTS, *STATE) if start_from else PARTS:
             source = (start_from.root if start_from else REPOSITORY) / part
             copy = shutil.copytree if source.is_dir() else shutil.copy2
@@ -35,11 +37,21 @@ def make_project(tmp_path_factory):
 
 
 @pytest.fixture(scope="session")
-def quick(make_project) -> Project:
-    """The whole quick preset with its report. Read only: tests that change something take a copy."""
-    project = make_project()
-    project.run_well()
-    project.run_well("--report", "results/report.html")
+def quick(make_project, tmp_path_factory, worker_id) -> Project:
+    """The whole quick preset with its report. Read only: tests that run or change something take a copy.
+
+    Of several workers the first makes it, while the others wait.
+    """
+    temporary = tmp_path_factory.getbasetemp()
+    shared = (temporary if worker_id == "master" else temporary.parent) / "quick"
+    with alone_in(shared):
+        if (shared / "done").exists():
+            return Project(shared / "project", REPOSITORY)
+        (shared / "project").mkdir()
+        project = make_project(root=shared / "project")
+        project.run_well()
+        project.run_well("--report", "results/report.html")
+        (shared / "done").touch()
     return project
 
 

@@ -2,6 +2,7 @@
 
 import json
 import shutil
+from itertools import chain
 from pathlib import Path
 
 import pandas as pd
@@ -12,7 +13,7 @@ from project import CONFIGURATION
 from flexsurr.config.settings import load
 from flexsurr.report.catalogue import FIGURES, TABLES
 from flexsurr.workflow.plan import Plan
-from flexsurr.workflow.sample_plan import EVALUATED
+from flexsurr.workflow.sample_plan import EVALUATION
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 BEAM = "cantilever"
@@ -24,15 +25,13 @@ PLAN = Plan(load(REPOSITORY, CONFIGURATION))
 
 
 def products_of(*reads: str, study: str = BEAM) -> dict[str, int]:
-    """How many figures and tables of a study show any of what they `read`; the tables are then joined."""
-    figures = [FIGURES[name] for name in PLAN.figures(study)]
-    tables = [TABLES[name] for name in PLAN.tables(study)]
-    drawn, tabulated = (
-        sum(not set(reads).isdisjoint(product.reads) for product in products)
-        for products in (figures, tables)
-    )
-    counts = {"draw": drawn, "tabulate": tabulated, "join": 1, "answer": 1}
-    return {name: count for name, count in counts.items() if count}
+    """The jobs that make figures and tables of a study which show what they `read`, and the last two."""
+    jobs = {"join": 1, "answer": 1}
+    for command, products in (("draw", FIGURES), ("tabulate", TABLES)):
+        for shown, names in PLAN.made_together(study, products).items():
+            if any(not set(reads).isdisjoint(products[name].reads) for name in names):
+                jobs[f"{command}_{study}_{shown}"] = 1
+    return jobs
 
 
 RUNS = ("metrics", "relatives", "history")
@@ -44,12 +43,11 @@ FLOWN = {
     "accuracy": 1,
     "fly": 1,
     "fly_randomly": 1,
-    **products_of("metrics", *EVALUATED, "cost-*", study="airliner"),
+    **products_of("metrics", *chain(*EVALUATION.values()), "cost-*", study="airliner"),
 }
 LEARNT = {
     "manifest": 2,
-    "train": 8,
-    "score": 10,
+    "trials": 1,
     "learn_load": 2,
     **SELECTED,
     **products_of(*RUNS, *COSTS, *RESPONSES, "learned_loads-*"),
@@ -59,11 +57,11 @@ LEARNT = {
 @pytest.mark.parametrize(
     ("file", "keys", "value", "jobs"),
     [
-        (SWEEP, "spaces.0.epochs", [21], {"train": 2, "score": 2, **SELECTED}),
-        (SWEEP, "spaces.1.hidden", [[8], [4]], {"train": 2, "score": 2, **SELECTED}),
-        (QUICK, f"{OVER}.dataset.trajectories", 9, {"simulate": 2, **LEARNT}),
+        (SWEEP, "spaces.0.epochs", [21], {"trials": 1, **SELECTED}),
+        (SWEEP, "spaces.1.hidden", [[8], [4]], {"trials": 1, **SELECTED}),
+        (QUICK, f"{OVER}.dataset.trajectories", 9, {"shards": 2, **LEARNT}),
         (QUICK, f"{OVER}.evaluation.repeats", 2, {"evaluate": 4, **products_of(*COSTS)}),
-        (QUICK, f"{OVER}.evaluation.long_responses", 3, {"score": 10, **SELECTED}),
+        (QUICK, f"{OVER}.evaluation.long_responses", 3, {"trials": 1, **SELECTED}),
         (
             QUICK,
             f"{OVER}.statics.tip_loads_N",
@@ -74,7 +72,7 @@ LEARNT = {
             "config/sweeps/airliner_quick.yaml",
             "spaces.1.epochs",
             [6],
-            {"train": 1, "score": 1, **FLOWN},
+            {"trials": 1, **FLOWN},
         ),
         ("config/config.yaml", "tracking.uri", "http://127.0.0.1:9", {}),
         ("config/config.yaml", "timing.cores", 1, {}),
@@ -88,7 +86,7 @@ def test_changing_a_value(copy_of_quick, file, keys, value, jobs):
 def test_editing_the_file_of_a_network_of_ones_own_trains_it_anew(copy_of_quick):
     with (copy_of_quick.root / "examples" / "my_models.py").open("a") as source:
         source.write("# another thought\n")
-    assert copy_of_quick.scheduled() == {"train": 2, "score": 2, **SELECTED}
+    assert copy_of_quick.scheduled() == {"trials": 1, **SELECTED}
 
 
 def test_a_value_that_is_removed_deletes_nothing_and_one_that_comes_back_trains_nothing(copy_of_quick):
@@ -140,28 +138,28 @@ def test_a_sweep_of_which_no_trial_finishes_ends_with_tables_that_say_so(copy_of
     [
         (
             "flexsurr/beam/compiled.py",
-            {"simulate", "statics", "validation", "manifest", "train", "responses", "evaluate"},
+            {"shards", "statics", "validation", "manifest", "trials", "responses", "evaluate"},
             {"accuracy", "fly", "fly_randomly"},
         ),
         (
             "flexsurr/evaluation/timing.py",
             {"evaluate", "join"},
-            {"simulate", "manifest", "train", "statics"},
+            {"shards", "manifest", "trials", "statics"},
         ),
         (
             "flexsurr/storage/moments.py",
-            {"manifest", "train"},
-            {"simulate", "statics", "validation"},
+            {"manifest", "trials"},
+            {"shards", "statics", "validation"},
         ),
         (
             "flexsurr/report/style.py",
-            {"draw"},
-            {"simulate", "train", "evaluate", "responses", "statics", "score", "select"},
+            {f"draw_{BEAM}_{shown}" for shown in PLAN.made_together(BEAM, FIGURES)},
+            {"shards", "trials", "evaluate", "responses", "statics", "select"},
         ),
         (
             "flexsurr/workflow/plan.py",
             set(),
-            {"simulate", "train", "evaluate", "score", "select"},
+            {"shards", "trials", "evaluate", "select"},
         ),
     ],
 )
@@ -188,7 +186,7 @@ def test_a_study_that_is_added_is_built_at_once(copy_of_quick, uri):
     copy_of_quick.change("config/config.yaml", "tracking.uri", uri)
     scheduled = copy_of_quick.scheduled()
     added = copy_of_quick.plan
-    assert scheduled["train"] == len(added.studies["wing_unit"].runs)
+    assert scheduled["trials"] == len(added.trial_batches["wing_unit"])
     assert scheduled["evaluate"] == 2 * len(added.studies["wing_unit"].variants)
     assert scheduled["join"] == 1
 

@@ -21,6 +21,7 @@ with SnakemakeApi() as api:
 def test_everything_is_planned_without_a_number_of_cores(make_project):
     """As under `--executor … --jobs 2`: jobs that measure time ask for one core, or as timing.cores says."""
     project = make_project()
+    project.change("config/presets/quick.yaml", "timing", {})
     done = subprocess.run(
         [sys.executable, "-c", PLANNED],
         cwd=project.root,

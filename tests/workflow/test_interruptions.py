@@ -34,6 +34,7 @@ def prepared(quick, make_project):
     """The quick preset with one long training instead of its sweep, not yet run."""
     project = make_project(quick)
     (project.root / "config/sweeps/quick.yaml").write_text(LONG_SWEEP)
+    project.change("config/presets/quick.yaml", "batches.trials_per_job", 1)
     return project
 
 

@@ -74,4 +74,4 @@ def test_another_file_is_another_dataset(own):
         file.writelines(f"6,{0.1 * k},0.5,{0.1 * k}\n" for k in range(20))
     scheduled = own.scheduled()
     assert scheduled["ingest"] == scheduled["manifest"] == 1
-    assert scheduled["train"] == len(own.plan.runs)
+    assert scheduled["trials"] == len(own.plan.trial_batches[STUDY])

@@ -1,6 +1,7 @@
 """The pages a person looks at, in a real browser: the report, and MLflow's page served on loopback."""
 
 import os
+import re
 import shutil
 import socket
 import subprocess
@@ -303,6 +304,17 @@ def served(quick, tmp_path_factory):
     finally:
         os.killpg(server.pid, 15)
         server.wait(PATIENCE_S)
+
+
+def test_the_address_of_make_ui_opens_on_model_training(served, browser):
+    """Not on MLflow's view of language models, which has traces and prompts."""
+    makefile = (Path(__file__).parents[2] / "Makefile").read_text()
+    place = re.search(r"^MODEL_TRAINING := (.+)$", makefile, re.MULTILINE)[1].replace("\\#", "#")
+    browser.get(f"{served.address}/{place}")
+    wait_for(browser, "cantilever", "Model registry")
+    assert "prompts" not in text_of(browser).lower()
+    click(browser, "cantilever")
+    wait_for(browser, "sweeps of cantilever")
 
 
 def test_the_page_shows_the_sweep_and_its_trials(quick, served, browser):

@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from flexsurr.report.catalogue import FIGURES
+
 REPOSITORY = Path(__file__).resolve().parents[2]
 RECORDER = '#!/bin/sh\nprintf "%s\\n" "$@" >> "$(dirname "$0")/arguments"\n'
 
@@ -28,8 +30,9 @@ def test_a_study_with_a_hyphen_in_folders_with_spaces(make_project):
 def test_a_study_is_a_target_and_no_other_study_is_made_for_it(make_project):
     project = make_project()
     scheduled = project.scheduled("wing")
-    assert scheduled["draw"] == len(project.plan.figures("wing"))
-    assert scheduled["tabulate"] == len(project.plan.tables("wing"))
+    shown = project.plan.made_together("wing", FIGURES)
+    assert {name for name in scheduled if name.startswith("draw_")} == {f"draw_wing_{made}" for made in shown}
+    assert sum(map(len, shown.values())) == len(project.plan.figures("wing"))
     assert "fly" not in scheduled
 
 

@@ -28,7 +28,7 @@ def slurm(tmp_path_factory):
 def through_slurm(slurm, make_project):
     """The tables of the cantilever, every job through Slurm as profiles/slurm says, trials in a batch."""
     project = make_project()
-    project.change("config/config.yaml", "batches", {"trials_per_job": 20})
+    project.change("config/presets/quick.yaml", "batches", {"trials_per_job": 20, "shards_per_job": 1})
     tables = [f"results/tables/{BEAM}/{name}.html" for name in project.plan.tables(BEAM)]
     project.run_well("--profile", "profiles/slurm", *OF_THIS_SLURM, *AT_ONCE, *tables)
     return project

@@ -147,7 +147,7 @@ def test_a_network_of_ones_own_goes_all_the_way(quick):
 
 def test_every_rule_leaves_a_log(quick):
     logs = {path.relative_to(quick.results / "logs").parts[0] for path in quick.results.glob("logs/**/*.log")}
-    assert {"simulate", "manifest", "statics", "validation", "train", "score", "select"} <= logs
+    assert {"shards", "manifest", "statics", "validation", "trials", "select"} <= logs
     assert {"accuracy", "fly", "fly_randomly"} <= logs
     assert {"evaluate", "responses", "draw", "tabulate"} <= logs
 
@@ -158,8 +158,8 @@ def test_nothing_half_written_is_left(quick):
     ] == []
 
 
-def test_making_it_again_takes_nothing(quick):
-    output = quick.run_well()
+def test_making_it_again_takes_nothing(copy_of_quick):
+    output = copy_of_quick.run_well()
     assert "Nothing to be done" in output
 
 

@@ -8,8 +8,6 @@ wildcard_constraints:
     response="free|forced",
     shard=r"\d+",
     batch=r"\d+-of-\d+",
-    figure="[a-z0-9_]+",
-    table="[a-z0-9_]+",
 
 
 rule ingest:

@@ -11,6 +11,7 @@ from snakemake.logging import logger
 
 from flexsurr.config.errors import ConfigurationError
 from flexsurr.config.settings import load
+from flexsurr.workflow.batches import outdated
 from flexsurr.workflow.code_digest import code_digest
 from flexsurr.workflow.job_files import job_file, write_job
 from flexsurr.workflow.plan import Plan
@@ -46,6 +47,10 @@ STUDIES = list(plan.settings.studies)
 if workflow.is_main_process:
     for line in plan.trials(Path(RESULTS) / "runs"):
         logger.info(line)
+    for note in outdated(Path(RESULTS)):
+        logger.info(f"{note}: a file that it tells of is gone; its batch runs again")
+        if not workflow.dryrun:
+            note.unlink()
 
 
 def timing_cores(wildcards):
@@ -63,11 +68,11 @@ def write(name, job):
     return str(make(Path(RESULTS) / "jobs", name, job))
 
 
-def job(rule, *keys):
-    """A function of wildcards that gives the file of the job of `rule`."""
+def job(rule, *keys, ending=None):
+    """A function of wildcards that gives the file of the job of `rule`, and of what is no wildcard: `ending`."""
 
     def path(wildcards):
-        values = [wildcards[key] for key in keys]
+        values = [wildcards[key] for key in keys] + ([] if ending is None else [ending])
         return write(f"{rule}/{'-'.join(values)}", plan.job(rule, *values))
 
     return path
@@ -87,8 +92,3 @@ def code(command):
 def caption_file(name):
     """The file that says what to see in the figure or table `name`."""
     return os.path.relpath(f"{workflow.basedir}/workflow/report/{name}.rst")
-
-
-def caption(name):
-    """What to see in the figure or table `name`."""
-    return Path(caption_file(name)).read_text(encoding="utf-8")

@@ -1,71 +1,95 @@
-# Figures and tables, each with a caption that says what to see.
+# Figures and tables, each with a caption that says what to see. One start of Python makes all that show what
+# one rule has made, for it takes longer than a figure does. Which they are follows from the study: hence loops.
 
 from flexsurr.report.catalogue import FIGURES, TABLES
 
+for study in STUDIES:
+    for shown, names in plan.made_together(study, FIGURES).items():
 
-rule draw:
-    input:
-        lambda w: needed(plan.read_by(w.study, FIGURES[w.figure])),
-    output:
-        svg=report(
-            f"{RESULTS}/figures/{{study}}/{{figure}}.svg",
-            caption="../report/product.rst",
-            category="{study}",
-            subcategory="figures",
-            labels=lambda w: {"figure": w.figure, "shows": FIGURES[w.figure].title},
-        ),
-        png=f"{RESULTS}/figures/{{study}}/{{figure}}.png",
-    log:
-        f"{RESULTS}/logs/draw/{{study}}-{{figure}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/draw/{{study}}-{{figure}}.tsv"
-    threads: 1
-    resources:
-        mem_mb=1000,
-        runtime=30,
-    params:
-        job=job("draw", "study", "figure"),
-        code=code("draw"),
-        caption=lambda w: caption(w.figure),
-        results=lambda w: RESULTS,
-    message:
-        "drawing {wildcards.figure} of {wildcards.study}"
-    shell:
-        "python -m flexsurr draw --job {params.job:q} --results {params.results:q} --output {output.svg:q}"
-        " > {log:q} 2>&1"
+        rule:
+            # Figures of one study that show what one rule has made.
+            name:
+                f"draw_{study}_{shown}"
+            input:
+                needed(plan.shown(study, FIGURES, names)),
+            output:
+                svg=[
+                    report(
+                        f"{RESULTS}/figures/{{study}}/{figure}.svg",
+                        caption=f"../report/{figure}.rst",
+                        category="{study}",
+                        subcategory="figures",
+                        labels={"figure": figure, "shows": FIGURES[figure].title},
+                    )
+                    for figure in names
+                ],
+                png=[f"{RESULTS}/figures/{{study}}/{figure}.png" for figure in names],
+            log:
+                f"{RESULTS}/logs/draw/{{study}}-{shown}.log",
+            benchmark:
+                f"{RESULTS}/benchmarks/draw/{{study}}-{shown}.tsv"
+            wildcard_constraints:
+                study=study,
+            group:
+                "figures-{study}"
+            threads: 1
+            resources:
+                mem_mb=1000,
+                runtime=30,
+            params:
+                job=job("draw", "study", ending=shown),
+                code=code("draw"),
+                results=lambda w: RESULTS,
+                folder=lambda w, output: os.path.dirname(output[0]),
+            message:
+                f"drawing {len(names)} of the figures of {study}: {shown}"
+            shell:
+                "python -m flexsurr draw --job {params.job:q} --results {params.results:q}"
+                " --folder {params.folder:q} > {log:q} 2>&1"
 
+    for shown, names in plan.made_together(study, TABLES).items():
 
-rule tabulate:
-    input:
-        lambda w: needed(plan.read_by(w.study, TABLES[w.table])),
-        caption=lambda w: caption_file(w.table),
-    output:
-        html=report(
-            f"{RESULTS}/tables/{{study}}/{{table}}.html",
-            caption="../report/product.rst",
-            category="{study}",
-            subcategory="tables",
-            labels=lambda w: {"table": w.table, "shows": TABLES[w.table].title},
-        ),
-        csv=f"{RESULTS}/tables/{{study}}/{{table}}.csv",
-    log:
-        f"{RESULTS}/logs/tabulate/{{study}}-{{table}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/tabulate/{{study}}-{{table}}.tsv"
-    threads: 1
-    resources:
-        mem_mb=1000,
-        runtime=30,
-    params:
-        job=job("tabulate", "study", "table"),
-        code=code("tabulate"),
-        caption=lambda w: caption(w.table),
-        results=lambda w: RESULTS,
-    message:
-        "tabulating {wildcards.table} of {wildcards.study}"
-    shell:
-        "python -m flexsurr tabulate --job {params.job:q} --results {params.results:q}"
-        " --caption {input.caption:q} --output {output.html:q} > {log:q} 2>&1"
+        rule:
+            # Tables of one study that show what one rule has made.
+            name:
+                f"tabulate_{study}_{shown}"
+            input:
+                needed(plan.shown(study, TABLES, names)),
+                captions=[caption_file(table) for table in names],
+            output:
+                html=[
+                    report(
+                        f"{RESULTS}/tables/{{study}}/{table}.html",
+                        caption=f"../report/{table}.rst",
+                        category="{study}",
+                        subcategory="tables",
+                        labels={"table": table, "shows": TABLES[table].title},
+                    )
+                    for table in names
+                ],
+                csv=[f"{RESULTS}/tables/{{study}}/{table}.csv" for table in names],
+            log:
+                f"{RESULTS}/logs/tabulate/{{study}}-{shown}.log",
+            benchmark:
+                f"{RESULTS}/benchmarks/tabulate/{{study}}-{shown}.tsv"
+            wildcard_constraints:
+                study=study,
+            group:
+                "tables-{study}"
+            threads: 1
+            resources:
+                mem_mb=1000,
+                runtime=30,
+            params:
+                job=job("tabulate", "study", ending=shown),
+                code=code("tabulate"),
+                results=lambda w: RESULTS,
+                folder=lambda w, output: os.path.dirname(output[0]),
+            message:
+                f"tabulating {len(names)} of the tables of {study}: {shown}"
+            shell:
+                "python -m flexsurr tabulate --job {params.job:q} --results {params.results:q}"
+                " --captions {input.captions:q} --folder {params.folder:q} > {log:q} 2>&1"
 
 
 # The tables that any study has.
@@ -109,7 +133,7 @@ rule answer:
     output:
         page=report(
             f"{RESULTS}/answer.html",
-            caption="../report/product.rst",
+            caption="../report/answer.rst",
             category="answer",
             labels={"shows": "When does a surrogate pay?"},
         ),
@@ -128,7 +152,6 @@ rule answer:
     params:
         job=lambda w: write("answer", {}),
         code=code("answer"),
-        caption=lambda w: caption("answer"),
     message:
         "answering when a surrogate pays"
     shell:
