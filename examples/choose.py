@@ -14,8 +14,8 @@ from time import perf_counter
 import numpy as np
 
 from flexsurr.beam import ModalBasis, natural_modes, reduce, reduced_order, tip_position
-from flexsurr.config.reading import read_yaml
 from flexsurr.config.structure import Structure
+from flexsurr.config.structure_file import read_structure
 from flexsurr.config.study import InitialConditions, Integrator, Reduction
 from flexsurr.simulation import simulate
 
@@ -38,13 +38,14 @@ def decay_rates(basis: ModalBasis) -> np.ndarray:
 
 def main(path: Path, modes: int, q_max_deg: float, simulates: bool) -> None:
     """Print the frequencies, and what follows from them."""
-    structure = Structure.model_validate(read_yaml(path))
+    structure = read_structure(path)
     basis = reduce(structure, Reduction(modes=modes, normalisation="mass"))
     rates = decay_rates(basis)
     q_max = math.radians(q_max_deg)
+    at_rest = tip_position(structure, np.zeros(structure.coordinates))
     print("mode  rad/s      period s   damping     tip at q_max, of the length   p_max kg m²/s")
     for k, (omega, norm) in enumerate(zip(basis.omega_rad_s, basis.unit_norms, strict=True)):
-        tip = tip_position(structure, basis.modes[:, k] / norm * q_max) - [structure.length_m, 0.0, 0.0]
+        tip = tip_position(structure, basis.modes[:, k] / norm * q_max) - at_rest
         damping = basis.damping[k, k] / (2.0 * omega)
         print(
             f"{k + 1:<5} {omega:<10.4g} {2 * math.pi / omega:<11.4g}{damping:<12.3g}"

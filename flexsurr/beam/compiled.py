@@ -5,12 +5,14 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from flexsurr.beam.chain import chain, rotary_inertia
+from flexsurr.beam.chain import Chain, chain, rotary_inertia
 from flexsurr.beam.dynamics import BeamModel
 from flexsurr.beam.planar import is_planar, plane
 from flexsurr.beam.planar_sweep import PlanarChain, PlanarMode, padded_length, planar_work_size
 from flexsurr.beam.projection import Projection
+from flexsurr.beam.rigid_sweep import RigidChain, RigidElements, rigid_work_size
 from flexsurr.beam.spatial_sweep import SpatialChain, spatial_work_size
 from flexsurr.simulation.rhs import Array, evaluate
 
@@ -23,17 +25,22 @@ class CompiledBeam(BeamModel):
     def kernel(self) -> NamedTuple:
         """The cheapest kernel that fits the chain."""
         keep = self.variant == "hamiltonian"
-        if not is_planar(self.projection.structure):
+        if is_planar(self.projection.structure):
+            single = self.projection.coordinates == 1
+            return (planar_mode_kernel if single else planar_kernel)(self.projection, keep)
+        if chain(self.projection.structure).uniform:
             return spatial_kernel(self.projection, keep)
-        if self.projection.coordinates == 1:
-            return planar_mode_kernel(self.projection, keep)
-        return planar_kernel(self.projection, keep)
+        return rigid_kernel(self.projection, keep)
 
     @property
     def work_size(self) -> int:
         """Scratch that the kernel needs."""
-        size = planar_work_size if is_planar(self.projection.structure) else spatial_work_size
-        return size(self.projection.structure.elements, self.projection.coordinates)
+        structure = self.projection.structure
+        if is_planar(structure):
+            size = planar_work_size
+        else:
+            size = spatial_work_size if chain(structure).uniform else rigid_work_size
+        return size(structure.elements, self.projection.coordinates)
 
     def derivative(self, t: float, x: Array) -> Array:
         """ẋ (2r,) at states x (2r,)."""
@@ -51,7 +58,9 @@ def planar_mode_kernel(projection: Projection, gyroscopic: bool) -> PlanarMode:
         slopes=slopes,
         arms=frame.element_length * slopes,
         weights=own(frame.weights / frame.element_length),
-        mass=frame.element_mass,
+        masses=own(frame.masses),
+        places=own(np.diagonal(frame.levers) / frame.element_length),
+        inertia=float(frame.rotary_inertia[0, 0]),
         stiffness=float(projection.stiffness[0, 0]),
         damping=float(projection.damping[0, 0]),
         gyroscopic=gyroscopic,
@@ -66,7 +75,9 @@ def planar_kernel(projection: Projection, gyroscopic: bool) -> PlanarChain:
         slopes=padded(frame.slopes.T),
         element_length=frame.element_length,
         weights=own(frame.weights),
-        mass=frame.element_mass,
+        root_masses=own(np.sqrt(frame.masses)),
+        places=own(np.diagonal(frame.levers) / frame.element_length),
+        inertia=own(frame.rotary_inertia),
         stiffness=own(projection.stiffness),
         damping=own(projection.damping),
         gyroscopic=gyroscopic,
@@ -74,19 +85,18 @@ def planar_kernel(projection: Projection, gyroscopic: bool) -> PlanarChain:
 
 
 def spatial_kernel(projection: Projection, gyroscopic: bool) -> SpatialChain:
-    """The kernel of any coordinates of any chain."""
+    """The kernel of any coordinates of a uniform, straight chain."""
     beam = chain(projection.structure)
     modes = all_joints(projection)
-    moves = np.any(modes.reshape(-1, 4, beam.elements) != 0.0, axis=1)
     inertia = projection.modes.T @ rotary_inertia(projection.structure) @ projection.modes
     return SpatialChain(
         modes=modes,
-        first=np.argmax(moves, axis=1).astype(np.int64),
+        first=first_moved(modes),
         clamp=own(beam.clamp),
         element_length=beam.element_length,
-        offset=beam.offset,
-        mass=beam.element_mass,
-        weight=own(beam.element_mass * beam.gravity),
+        offset=float(beam.arms[0, 1]),
+        mass=float(beam.masses[0]),
+        weight=own(beam.masses[0] * beam.gravity),
         unloaded=np.zeros((beam.elements, 3)),
         rotary_inertia=own(inertia),
         stiffness=own(projection.stiffness),
@@ -94,6 +104,54 @@ def spatial_kernel(projection: Projection, gyroscopic: bool) -> SpatialChain:
         gyroscopic=gyroscopic,
         heavy=bool(np.any(beam.gravity)),
     )
+
+
+def rigid_kernel(projection: Projection, gyroscopic: bool) -> RigidChain:
+    """The kernel of any coordinates of any chain."""
+    beam = chain(projection.structure)
+    modes = all_joints(projection)
+    tensors = np.zeros((beam.elements, 3, 3)) if beam.tensors is None else own(beam.tensors)
+    squares, axes = np.linalg.eigh(tensors)
+    roots = np.sqrt(np.maximum(squares, 0.0))[:, :, None] * np.swapaxes(axes, 1, 2)
+    inertia = projection.modes.T @ rotary_inertia(projection.structure) @ projection.modes
+    return RigidChain(
+        modes=modes,
+        first=first_moved(modes),
+        elements=rigid_elements(beam),
+        masses=own(beam.masses),
+        root_masses=own(np.sqrt(beam.masses)),
+        tensors=tensors,
+        root_tensors=own(roots),
+        weights=own(beam.masses[:, None] * beam.gravity),
+        unloaded=np.zeros((beam.elements, 3)),
+        rotary_inertia=own(inertia),
+        stiffness=own(projection.stiffness),
+        damping=own(projection.damping),
+        exact=beam.tensors is not None,
+        gyroscopic=gyroscopic,
+        heavy=bool(np.any(beam.gravity)),
+    )
+
+
+def rigid_elements(beam: Chain) -> RigidElements:
+    """The chain as compiled code has it."""
+    bent = beam.turns is not None
+    return RigidElements(
+        clamp=own(beam.clamp),
+        turns=own(np.zeros((beam.elements, 3, 3)) if beam.turns is None else beam.turns),
+        spans=own(beam.spans),
+        stretches=own(beam.stretches),
+        middles=own(beam.middles),
+        arms=own(beam.arms),
+        bent=bent,
+        by_vector=beam.by_vector,
+    )
+
+
+def first_moved(modes: Array) -> NDArray[np.int64]:
+    """(r,) the first element that each of the modes (r, 4 N) moves."""
+    moves = np.any(modes.reshape(len(modes), 4, -1) != 0.0, axis=1)
+    return np.argmax(moves, axis=1).astype(np.int64)
 
 
 def all_joints(projection: Projection) -> Array:

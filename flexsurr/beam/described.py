@@ -5,17 +5,38 @@ joint coordinates and only then projected onto the modes. The gyroscopic term, w
 is a derivative with respect to the model's own coordinates.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
-from flexsurr.beam.chain import chain
+from flexsurr.beam.chain import Chain, chain
 from flexsurr.beam.dynamics import BeamModel
 from flexsurr.beam.kinematics import cross
+from flexsurr.beam.rotation_vector import rotation
 from flexsurr.config.structure import Joint, Structure
 from flexsurr.simulation.rhs import Array
 
 _STEP = 1e-30
 AXIS: dict[Joint, tuple[int, float]] = {"in_plane": (2, 1.0), "out_of_plane": (1, -1.0), "torsion": (0, 1.0)}
 """The column of the frame about which a joint turns, and its sense."""
+
+
+class Points(NamedTuple):
+    """Where the chain is: vectors in the clamp's frame before it is turned [m], and the elements' axes."""
+
+    masses: list[Array]  # (3,) of each element's centre of gravity
+    centres: list[Array]  # (3,) of each element's middle
+    tip: Array  # (3,)
+    frames: list[Array]  # (3, 3) of each element, columns are its axes
+
+
+class Jacobians(NamedTuple):
+    """∂/∂q of the same."""
+
+    masses: Array  # (N, 3, n)
+    centres: Array  # (N, 3, n)
+    tip: Array  # (3, n)
+    turning: Array  # (N, 3, n) angular velocity of the elements for each rate; where their inertia is exact
 
 
 def joint_rotation(joint: Joint, angle: complex) -> Array:
@@ -28,74 +49,116 @@ def joint_rotation(joint: Joint, angle: complex) -> Array:
     return np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
 
 
-def points(structure: Structure, q: Array) -> tuple[list[Array], list[Array], Array]:
-    """Positions (3,) of the masses, of the elements' centres, and of the tip at q (n,), eq. 1 [m]."""
+def blocks_of(structure: Structure, values: Array) -> dict[Joint, Array]:
+    """`values` (n,) of the coordinates, or their rates, by the kind of joint: (N,) of each."""
+    return dict(zip(structure.ordered_joints, np.split(values, len(structure.joints)), strict=True))
+
+
+def rotation_vector(blocks: dict[Joint, Array], i: int) -> Array:
+    """(3,) the rotations of joint i as one vector: each about its axis."""
+    vector = np.zeros(3, dtype=next(iter(blocks.values())).dtype)
+    for joint, (column, sense) in AXIS.items():
+        if joint in blocks:
+            vector[column] = sense * blocks[joint][i]
+    return vector
+
+
+def turned(beam: Chain, frame: Array, blocks: dict[Joint, Array], i: int) -> Array:
+    """(3, 3) frame of element i, from that of the element before."""
+    if beam.turns is not None:
+        frame = frame @ beam.turns[i]
+    if beam.by_vector:
+        return np.asarray(frame @ rotation(rotation_vector(blocks, i))[0])
+    for joint, block in blocks.items():
+        if joint != "axial":
+            frame = frame @ joint_rotation(joint, block[i])
+    return frame
+
+
+def points(structure: Structure, q: Array) -> Points:
+    """Positions and frames at q (n,), eq. 1."""
     beam = chain(structure)
-    blocks = dict(zip(structure.ordered_joints, np.split(q, len(structure.joints)), strict=True))
+    blocks = blocks_of(structure, q)
     frame = beam.clamp
     node = np.zeros(3)
-    masses, centres = [], []
+    masses, centres, frames = [], [], []
     for i in range(structure.elements):
-        stretch = 0.0
-        for joint, block in blocks.items():
-            if joint == "axial":
-                stretch = block[i]
-            else:
-                frame = frame @ joint_rotation(joint, block[i])
-        x_axis, y_axis = frame[:, 0], frame[:, 1]
-        centre = node + (0.5 * beam.element_length + stretch) * x_axis
-        masses.append(centre + beam.offset * y_axis)
-        centres.append(centre)
-        node = node + (beam.element_length + stretch) * x_axis
-    return masses, centres, node
+        frame = turned(beam, frame, blocks, i)
+        if "axial" in blocks:
+            node = node + blocks["axial"][i] * (frame @ beam.stretches[i])
+        masses.append(node + frame @ beam.arms[i])
+        centres.append(node + frame @ beam.middles[i])
+        frames.append(frame)
+        node = node + frame @ beam.spans[i]
+    return Points(masses, centres, node, frames)
 
 
-def jacobians(structure: Structure, q: Array) -> tuple[Array, Array, Array]:
-    """∂r/∂q of masses (N, 3, n), centres (N, 3, n) and tip (3, n), a complex step a column: J of eq. 3."""
-    n = len(q)
-    of_masses, of_centres = np.empty((2, structure.elements, 3, n))
+def jacobians(structure: Structure, q: Array) -> Jacobians:
+    """All Jacobians at q (n,), a complex step a column: J of eq. 3."""
+    n, exact = len(q), chain(structure).tensors is not None
+    of_masses, of_centres, turning = np.zeros((3, structure.elements, 3, n))
     of_tip = np.empty((3, n))
     for k in range(n):
         step = np.zeros(n, dtype=complex)
         step[k] = 1j * _STEP
-        masses, centres, tip = points(structure, q + step)
-        of_masses[:, :, k] = np.array(masses).imag / _STEP
-        of_centres[:, :, k] = np.array(centres).imag / _STEP
-        of_tip[:, k] = tip.imag / _STEP
-    return of_masses, of_centres, of_tip
+        at = points(structure, q + step)
+        of_masses[:, :, k] = np.array(at.masses).imag / _STEP
+        of_centres[:, :, k] = np.array(at.centres).imag / _STEP
+        of_tip[:, k] = at.tip.imag / _STEP
+        for i, frame in enumerate(at.frames if exact else ()):
+            # the change of a frame is its angular velocity crossed with its axes
+            spin = frame.imag @ frame.real.T / _STEP
+            turning[i, :, k] = spin[2, 1], spin[0, 2], spin[1, 0]
+    return Jacobians(of_masses, of_centres, of_tip, turning)
 
 
-def mass_matrix(structure: Structure, jacobian: Array, inertia: Array) -> Array:
-    """M (n, n) = Σ m JᵀJ + I from the masses' Jacobian (N, 3, n) and the rotary inertia (n, n), eq. 3."""
+def mass_matrix(structure: Structure, q: Array, jacobian: Jacobians, inertia: Array) -> Array:
+    """M (n, n) = Σ m JᵀJ + I, eq. 3, from the Jacobians at q (n,) and the constant rotary inertia (n, n).
+
+    Where the elements' inertia is exact, it is counted as they are turned.
+    """
+    beam = chain(structure)
     total = inertia.copy()
-    for columns in jacobian:
-        total += chain(structure).element_mass * columns.T @ columns
+    for mass, columns in zip(beam.masses, jacobian.masses, strict=True):
+        total += mass * columns.T @ columns
+    if beam.tensors is not None:
+        frames = points(structure, q).frames
+        for frame, tensor, turning in zip(frames, beam.tensors, jacobian.turning, strict=True):
+            total += turning.T @ frame @ tensor @ frame.T @ turning
     return total
 
 
-def velocities(structure: Structure, q: Array, rates: Array) -> list[Array]:
-    """Velocities (3,) of the masses at q (n,) and q̇ (n,) [m/s], from element to element: eq. 1 in time."""
+def velocities(structure: Structure, q: Array, rates: Array) -> tuple[list[Array], list[Array]]:
+    """Velocities (3,) of the masses at q (n,) and q̇ (n,) [m/s], from element to element: eq. 1 in time.
+
+    And the elements' angular velocities (3,) along their own axes [rad/s].
+    """
     beam = chain(structure)
-    joints = structure.ordered_joints
-    blocks = dict(zip(joints, np.split(q, len(joints)), strict=True))
-    rate_blocks = dict(zip(joints, np.split(rates, len(joints)), strict=True))
+    blocks, rate_blocks = blocks_of(structure, q), blocks_of(structure, rates)
     frame, turning, node_velocity = beam.clamp, np.zeros(3), np.zeros(3)
-    found = []
+    found, spins = [], []
     for i in range(structure.elements):
+        if beam.by_vector:
+            frame = turned(beam, frame, blocks, i)
+            tangent = rotation(rotation_vector(blocks, i))[1]
+            turning = turning + frame @ tangent @ rotation_vector(rate_blocks, i)
+        else:
+            if beam.turns is not None:
+                frame = frame @ beam.turns[i]
+            for joint, (column, sense) in AXIS.items():
+                if joint in blocks:
+                    turning = turning + sense * rate_blocks[joint][i] * frame[:, column]
+                    frame = frame @ joint_rotation(joint, blocks[joint][i])
         stretch, stretching = 0.0, 0.0
-        for joint in joints:
-            if joint == "axial":
-                stretch, stretching = blocks[joint][i], rate_blocks[joint][i]
-            else:
-                column, sense = AXIS[joint]
-                turning = turning + sense * rate_blocks[joint][i] * frame[:, column]
-                frame = frame @ joint_rotation(joint, blocks[joint][i])
-        x_axis, y_axis = frame[:, 0], frame[:, 1]
-        to_mass = (0.5 * beam.element_length + stretch) * x_axis + beam.offset * y_axis
-        to_node = (beam.element_length + stretch) * x_axis
-        found.append(node_velocity + cross(turning, to_mass) + stretching * x_axis)
-        node_velocity = node_velocity + cross(turning, to_node) + stretching * x_axis
-    return found
+        if "axial" in blocks:
+            stretch, stretching = blocks["axial"][i], rate_blocks["axial"][i]
+        along = frame @ beam.stretches[i]
+        to_mass = frame @ beam.arms[i] + stretch * along
+        to_node = frame @ beam.spans[i] + stretch * along
+        found.append(node_velocity + cross(turning, to_mass) + stretching * along)
+        node_velocity = node_velocity + cross(turning, to_node) + stretching * along
+        spins.append(frame.T @ turning)
+    return found, spins
 
 
 def gyroscopic_forces(structure: Structure, q: Array, rates: Array, modes: Array) -> Array:
@@ -103,10 +166,13 @@ def gyroscopic_forces(structure: Structure, q: Array, rates: Array, modes: Array
 
     `modes` (n, r) is Φ; one step a coordinate of the model.
     """
+    beam = chain(structure)
     forces = np.empty(modes.shape[1])
     for k, mode in enumerate(modes.T):
-        squares = [v @ v for v in velocities(structure, q + 1j * _STEP * mode, rates)]
-        kinetic = 0.5 * chain(structure).element_mass * np.sum(squares)
+        found, spins = velocities(structure, q + 1j * _STEP * mode, rates)
+        kinetic = 0.5 * sum(mass * v @ v for mass, v in zip(beam.masses, found, strict=True))
+        if beam.tensors is not None:
+            kinetic += 0.5 * sum(w @ tensor @ w for tensor, w in zip(beam.tensors, spins, strict=True))
         forces[k] = kinetic.imag / _STEP
     return forces
 
@@ -120,14 +186,14 @@ class DescribedBeam(BeamModel):
         r = self.projection.coordinates
         eta, momenta = x[:r], x[r:]
         q = modes @ eta
-        jacobian, _, _ = jacobians(structure, q)
-        mass = modes.T @ mass_matrix(structure, jacobian, self.joint_inertia) @ modes
+        jacobian = jacobians(structure, q)
+        mass = modes.T @ mass_matrix(structure, q, jacobian, self.joint_inertia) @ modes
         rates = np.linalg.solve(mass, momenta)
         forces = -self.projection.stiffness @ eta - self.projection.damping @ rates
         if structure.gravity_m_s2 > 0.0:
             beam = chain(structure)
-            for columns in jacobian:
-                forces = forces + modes.T @ (columns.T @ (beam.element_mass * beam.gravity))
+            for mass_i, columns in zip(beam.masses, jacobian.masses, strict=True):
+                forces = forces + modes.T @ (columns.T @ (mass_i * beam.gravity))
         if self.variant == "hamiltonian":
             forces = forces + gyroscopic_forces(structure, q, modes @ rates, modes)
         return np.concatenate([rates, forces])

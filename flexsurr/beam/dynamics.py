@@ -72,8 +72,8 @@ class BeamModel(ABC):
         kinetic = 0.5 * np.sum(momenta * np.linalg.solve(mass, momenta[..., None])[..., 0], axis=-1)
         elastic = 0.5 * np.sum(eta * (eta @ self.projection.stiffness.T), axis=-1)
         undeformed = configuration(beam, np.zeros(beam.coordinates)).masses
-        fall = np.sum(at.masses - undeformed, axis=-2) @ beam.gravity
-        energy: Array = kinetic + elastic - beam.element_mass * fall
+        fall = (beam.masses @ (at.masses - undeformed)) @ beam.gravity
+        energy: Array = kinetic + elastic - fall
         return energy
 
     def mass_matrix(self, eta: Array) -> Array:

@@ -77,7 +77,7 @@ class _Balance:
     def generalised(self, eta: Array) -> Array:
         """Φᵀ Q (..., r) at η (..., r)."""
         beam = chain(self.space.structure)
-        weights = np.tile(beam.element_mass * beam.gravity, (beam.elements, 1))
+        weights = beam.masses[:, None] * beam.gravity
         at = configuration(beam, eta @ self.space.modes.T)
         return (
             generalised_forces(beam, at, weights, self.load.on_centres, self.load.on_tip) @ self.space.modes
@@ -122,7 +122,7 @@ class _Balance:
     def _size(self) -> float:
         """A bound of Φᵀ Q: gravity and load as a moment over the length [N m], through the modes."""
         beam = chain(self.space.structure)
-        weight = beam.elements * beam.element_mass * np.linalg.norm(beam.gravity)
+        weight = beam.masses.sum() * np.linalg.norm(beam.gravity)
         forces = (
             weight + np.linalg.norm(self.load.on_centres, axis=1).sum() + np.linalg.norm(self.load.on_tip)
         )

@@ -1,8 +1,9 @@
 """Kinematics of the chain in vectorised NumPy: positions (eq. 1), velocities, generalised forces.
 
 Every function broadcasts over leading axes of q and takes complex q as well, for complex steps.
-Element i is turned by R_i = R_clamp Π_{j≤i} R_z(ψ_j) R_y'(θ_j) R_x(φ_j); then its stretch s_i moves
-it along its own x axis.
+Element i is turned by R_i = R_clamp Π_{j≤i} B_j R_z(ψ_j) R_y'(θ_j) R_x(φ_j), or by one rotation vector
+(φ, −θ, ψ) in place of the three; B is the fixed turn of a curved axis. Then its stretch s_i moves it along its
+own axis.
 """
 
 from dataclasses import dataclass
@@ -10,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexsurr.beam.chain import Chain, chain, check_coordinates, rotary_inertia
+from flexsurr.beam.rotation_vector import rotation
 from flexsurr.config.structure import Structure
 from flexsurr.simulation.rhs import Array
 
@@ -18,38 +20,68 @@ from flexsurr.simulation.rhs import Array
 class Configuration:
     """The chain at one q (or many, along leading axes), in the clamp's frame before it is turned [m]."""
 
-    axes: Array  # (..., 4, N, 3) axis of each joint: rotations about it, the stretch along it
+    axes: Array  # (..., 4, N, 3) angular velocity for a unit rate of each rotation; the stretch's direction
     frames: Array  # (..., N, 3, 3) orientation of the elements; columns are their axes
     nodes: Array  # (..., N + 1, 3) ends of the elements, the clamp first
     centres: Array  # (..., N, 3) middle of each element on the elastic axis
-    masses: Array  # (..., N, 3) the lumped masses
+    masses: Array  # (..., N, 3) the elements' centres of gravity
 
 
 def configuration(beam: Chain, q: Array) -> Configuration:
     """Positions and joint axes of `beam` at q (..., n)."""
     n = beam.elements
-    joints = np.zeros((*q.shape[:-1], 4 * n), dtype=q.dtype)
-    joints[..., beam.rows] = q
-    psi, theta, phi, stretch = (joints[..., k * n : (k + 1) * n] for k in range(4))
-
-    turns = _turns(psi, theta, phi)
+    psi, theta, phi, stretch = np.moveaxis(all_joints(beam, q).reshape(*q.shape[:-1], 4, n), -2, 0)
+    if beam.by_vector:
+        turns, tangents = rotation(rotation_vectors(psi, theta, phi))
+    else:
+        turns = _turns(psi, theta, phi)
     frames = np.empty((*q.shape[:-1], n, 3, 3), dtype=q.dtype)
     roots = np.empty_like(frames)
     frame = np.broadcast_to(beam.clamp, (*q.shape[:-1], 3, 3)).astype(q.dtype)
     for i in range(n):
+        if beam.turns is not None:
+            frame = frame @ beam.turns[i]
         roots[..., i, :, :] = frame
         frame = frame @ turns[..., i, :, :]
         frames[..., i, :, :] = frame
 
-    x, y = frames[..., 0], frames[..., 1]
-    # The axis of θ is −y after ψ, which the frame of the element before turns into place.
-    minus_y = roots[..., 0] * np.sin(psi)[..., None] - roots[..., 1] * np.cos(psi)[..., None]
-    axes = np.stack([roots[..., 2], minus_y, x, x], axis=-3)
+    along = _turned(frames, beam.stretches)
+    if beam.by_vector:
+        about = frames @ tangents
+        axes = np.stack([about[..., 2], -about[..., 1], about[..., 0], along], axis=-3)
+    else:
+        # The axis of θ is −y after ψ, which the frame of the element before turns into place.
+        minus_y = roots[..., 0] * np.sin(psi)[..., None] - roots[..., 1] * np.cos(psi)[..., None]
+        axes = np.stack([roots[..., 2], minus_y, frames[..., 0], along], axis=-3)
 
+    stretching = stretch[..., None] * along
     nodes = np.zeros((*q.shape[:-1], n + 1, 3), dtype=q.dtype)
-    np.cumsum((beam.element_length + stretch)[..., None] * x, axis=-2, out=nodes[..., 1:, :])
-    centres = nodes[..., :-1, :] + (0.5 * beam.element_length + stretch)[..., None] * x
-    return Configuration(axes, frames, nodes, centres, centres + beam.offset * y)
+    np.cumsum(_turned(frames, beam.spans) + stretching, axis=-2, out=nodes[..., 1:, :])
+    moved_roots = nodes[..., :-1, :] + stretching
+    return Configuration(
+        axes,
+        frames,
+        nodes,
+        moved_roots + _turned(frames, beam.middles),
+        moved_roots + _turned(frames, beam.arms),
+    )
+
+
+def all_joints(beam: Chain, q: Array) -> Array:
+    """(..., 4 N) the coordinates q (..., n), with zeros for the joints that are not enabled."""
+    joints = np.zeros((*q.shape[:-1], 4 * beam.elements), dtype=q.dtype)
+    joints[..., beam.rows] = q
+    return joints
+
+
+def rotation_vectors(psi: Array, theta: Array, phi: Array) -> Array:
+    """(..., 3) (φ, −θ, ψ): about x, about −y, about z."""
+    return np.stack([phi, -theta, psi], axis=-1)
+
+
+def _turned(frames: Array, vectors: Array) -> Array:
+    """(..., N, 3) vectors (N, 3) in the elements' frames (..., N, 3, 3), in the clamp's."""
+    return np.asarray((frames @ vectors[:, :, None])[..., 0])
 
 
 def tip_position(structure: Structure, q: Array) -> Array:
@@ -60,11 +92,17 @@ def tip_position(structure: Structure, q: Array) -> Array:
 def tip_twist(structure: Structure, q: Array) -> Array:
     """(...,) twist of the last element against the clamp [rad] at q (..., n): the angle φ of its 3-2-1 turn.
 
-    With R the turn from the clamp's axes to the element's, φ = atan2(R_zy, R_zz), between −π and π.
+    With R the turn from the unloaded element, seen along the clamp's axes, φ = atan2(R_zy, R_zz), between −π
+    and π.
     """
-    tip = configuration(chain(structure), _floating(check_coordinates(structure, q))).frames[..., -1, :, :]
-    up = tip.swapaxes(-1, -2) @ chain(structure).clamp[:, 2]
+    at = configuration(chain(structure), _floating(check_coordinates(structure, q)))
+    up = tip_up(chain(structure), at)
     return np.asarray(np.arctan2(up[..., 1], up[..., 2]))
+
+
+def tip_up(beam: Chain, at: Configuration) -> Array:
+    """(..., 3) the rise along the clamp's z of the axes that were the clamp's own on the unloaded last element."""
+    return np.asarray(np.swapaxes(at.frames[..., -1, :, :] @ beam.undeformed.T, -1, -2) @ beam.clamp[:, 2])
 
 
 def node_positions(structure: Structure, q: Array) -> Array:
@@ -82,12 +120,13 @@ class Velocities:
     """Velocities of the chain for k sets of joint rates."""
 
     spins: Array  # (..., k, 3, N, 3) angular velocity that each rotation adds [rad/s]
+    turning: Array  # (..., k, N, 3) angular velocity of the elements [rad/s]
     roots: Array  # (..., k, N, 3) of the inboard end of each element [m/s]
-    masses: Array  # (..., k, N, 3) of the lumped masses [m/s]
+    masses: Array  # (..., k, N, 3) of the centres of gravity [m/s]
 
     def combined(self, weights: Array) -> "Velocities":
         """The velocities for the sum of the sets, each times its weight (k,)."""
-        parts = (self.spins, self.roots, self.masses)
+        parts = (self.spins, self.turning, self.roots, self.masses)
         return Velocities(*(np.tensordot(weights, part, 1) for part in parts))
 
 
@@ -96,17 +135,15 @@ def velocities(beam: Chain, at: Configuration, rates: Array) -> Velocities:
 
     With the columns of Φ as rates, `masses` holds the columns of the Jacobian J Φ.
     """
-    n = beam.elements
-    joint_rates = np.zeros((*rates.shape[:-1], 4 * n), dtype=rates.dtype)
-    joint_rates[..., beam.rows] = rates
-    about = joint_rates.reshape(*rates.shape[:-1], 4, n, 1) * at.axes[..., None, :, :, :]
+    joint_rates = all_joints(beam, rates).reshape(*rates.shape[:-1], 4, beam.elements, 1)
+    about = joint_rates * at.axes[..., None, :, :, :]
     spins, stretching = about[..., :3, :, :], about[..., 3, :, :]
     turning = np.cumsum(spins.sum(axis=-3), axis=-2)
     roots = at.nodes[..., :-1, :]
     steps = cross(turning, (at.nodes[..., 1:, :] - roots)[..., None, :, :]) + stretching
     root_velocities = np.cumsum(steps, axis=-2) - steps
     of_masses = root_velocities + cross(turning, (at.masses - roots)[..., None, :, :]) + stretching
-    return Velocities(spins, root_velocities, of_masses)
+    return Velocities(spins, turning, root_velocities, of_masses)
 
 
 def generalised_forces(
@@ -137,10 +174,34 @@ def mass_matrix(structure: Structure, q: Array) -> Array:
 
 
 def projected_mass(beam: Chain, at: Configuration, modes: Array) -> Array:
-    """(..., r, r) Φᵀ (Σ m JᵀJ) Φ for modes Φ (n, r), without the rotary inertia."""
-    jacobian = velocities(beam, at, modes.T).masses
-    columns = jacobian.reshape(*jacobian.shape[:-2], 3 * beam.elements)
-    return beam.element_mass * columns @ np.swapaxes(columns, -1, -2)
+    """(..., r, r) Φᵀ (Σ m JᵀJ + Σ WᵀIW) Φ for modes Φ (n, r), without the constant rotary inertia.
+
+    W gives the elements' angular velocities, I is their own inertia where it is exact.
+    """
+    return mass_of(beam, at, velocities(beam, at, modes.T))
+
+
+def mass_of(beam: Chain, at: Configuration, motion: Velocities) -> Array:
+    """(..., r, r) of the same, from the velocities for each mode."""
+    columns = _columns(np.sqrt(beam.masses)[:, None] * motion.masses)
+    mass = columns @ np.swapaxes(columns, -1, -2)
+    if beam.tensors is not None:
+        mass = mass + _columns(motion.turning) @ np.swapaxes(_columns(spin_momenta(beam, at, motion.turning)), -1, -2)
+    return np.asarray(mass)
+
+
+def spin_momenta(beam: Chain, at: Configuration, turning: Array) -> Array:
+    """(..., k, N, 3) angular momenta of the elements about their centres of gravity [kg m²/s].
+
+    For k sets of their angular velocities `turning` (..., k, N, 3); their inertia is exact.
+    """
+    assert beam.tensors is not None
+    turned = at.frames @ beam.tensors @ np.swapaxes(at.frames, -1, -2)
+    return np.asarray((turned[..., None, :, :, :] @ turning[..., None])[..., 0])
+
+
+def _columns(vectors: Array) -> Array:
+    return vectors.reshape(*vectors.shape[:-2], -1)
 
 
 def cross(a: Array, b: Array) -> Array:

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from flexsurr.beam.chain import chain
-from flexsurr.beam.compiled import all_joints, own, padded
+from flexsurr.beam.compiled import all_joints, own, padded, rigid_elements
 from flexsurr.beam.described import jacobians
 from flexsurr.beam.kinematics import configuration, generalised_forces, tip_position, tip_twist
 from flexsurr.beam.load_sweeps import (
@@ -24,6 +24,7 @@ from flexsurr.beam.loads import Forces, Load, load_forces
 from flexsurr.beam.models import Implementation, check_implementation
 from flexsurr.beam.planar import is_planar, plane
 from flexsurr.beam.projection import ModalBasis, Projection, projection
+from flexsurr.beam.rigid_load_sweep import RigidLoaded, rigid_load_work_size
 from flexsurr.config.structure import Structure
 from flexsurr.simulation.history import breakpoints, factor, history_kernel
 from flexsurr.simulation.rhs import Array, CompiledModel, Model, evaluate
@@ -101,9 +102,9 @@ class DescribedLoad(InterpretedLoad):
         """Φᵀ Jᵀ F (r,) at η (r,)."""
         on_centres, on_tip = self.forces
         modes, structure = self.projection.modes, self.projection.structure
-        _, of_centres, of_tip = jacobians(structure, modes @ eta)
-        forces = of_tip.T @ on_tip
-        for columns, force in zip(of_centres, on_centres, strict=True):
+        jacobian = jacobians(structure, modes @ eta)
+        forces = jacobian.tip.T @ on_tip
+        for columns, force in zip(jacobian.centres, on_centres, strict=True):
             forces = forces + columns.T @ force
         return modes.T @ forces
 
@@ -151,6 +152,11 @@ class CompiledLoad(LoadedModel):
             return PlanarLoaded(self.model.kernel, padded(frame.slopes.T), padded(arms), history)
         beam = chain(self.projection.structure)
         modes, load = all_joints(self.projection), self.forces
+        if not beam.uniform:
+            return RigidLoaded(
+                self.model.kernel, modes, rigid_elements(beam), np.zeros((beam.elements, 3)),
+                own(load.on_centres), own(load.on_tip), history,
+            )  # fmt: skip
         return SpatialLoaded(
             self.model.kernel, modes, own(beam.clamp), beam.element_length, np.zeros(3),
             own(load.on_centres), own(load.on_tip), history,
@@ -160,7 +166,10 @@ class CompiledLoad(LoadedModel):
     def work_size(self) -> int:
         """Model and load use the same scratch, one after the other."""
         structure = self.projection.structure
-        load = planar_load_work_size if is_planar(structure) else spatial_load_work_size
+        if is_planar(structure):
+            load = planar_load_work_size
+        else:
+            load = spatial_load_work_size if chain(structure).uniform else rigid_load_work_size
         return int(max(self.model.work_size, load(structure.elements)))
 
     def derivative(self, t: float, x: Array) -> Array:

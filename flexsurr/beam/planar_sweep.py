@@ -21,7 +21,9 @@ class PlanarMode(NamedTuple):
     slopes: Array  # (P,) absolute angles for η = 1
     arms: Array  # (P,) l times the slopes [m]
     weights: Array  # (2, N) moment arms of gravity over the element's length [N]
-    mass: float  # of each element [kg]
+    masses: Array  # (N,) [kg]
+    places: Array  # (N,) where each lies, as part of the element's length
+    inertia: float  # rotary [kg m²]
     stiffness: float
     damping: float
     gyroscopic: bool
@@ -34,7 +36,9 @@ class PlanarChain(NamedTuple):
     slopes: Array  # (r, P) absolute angles for each η
     element_length: float  # [m]
     weights: Array  # (2, N) moment arms of gravity [N m]
-    mass: float  # of each element [kg]
+    root_masses: Array  # (N,) roots of the masses [kg½]
+    places: Array  # (N,) where each lies, as part of the element's length
+    inertia: Array  # (r, r) rotary [kg m²]
     stiffness: Array  # (r, r)
     damping: Array  # (r, r)
     gyroscopic: bool
@@ -44,7 +48,7 @@ class PlanarChain(NamedTuple):
 def planar_mode_rhs(kernel, t, x, dx, work):
     """Eq. 10 for one mode: the gyroscopic term is η̇² Σ m J·J′ with J′ the tangent's own tangent."""
     eta = x[0]
-    slopes, arms = kernel.slopes, kernel.arms
+    slopes, arms, masses, places = kernel.slopes, kernel.arms, kernel.masses, kernel.places
     padded = slopes.shape[0]
     n = kernel.weights.shape[1]
     steps_along, steps_normal = work[:padded], work[padded : 2 * padded]
@@ -58,11 +62,13 @@ def planar_mode_rhs(kernel, t, x, dx, work):
     for i in range(n):
         step_along, step_normal = steps_along[i], steps_normal[i]
         step_along_2, step_normal_2 = slopes[i] * step_along, slopes[i] * step_normal
-        mid_along, mid_normal = along + 0.5 * step_along, normal + 0.5 * step_normal
-        inertia += mid_along * mid_along
-        inertia_2 += mid_normal * mid_normal
-        slope += mid_along * (normal_2 + 0.5 * step_normal_2)
-        slope_2 += mid_normal * (along_2 + 0.5 * step_along_2)
+        place, mass = places[i], masses[i]
+        at_along, at_normal = along + place * step_along, normal + place * step_normal
+        weighted_along, weighted_normal = mass * at_along, mass * at_normal
+        inertia += weighted_along * at_along
+        inertia_2 += weighted_normal * at_normal
+        slope += weighted_along * (normal_2 + place * step_normal_2)
+        slope_2 += weighted_normal * (along_2 + place * step_along_2)
         along += step_along
         normal += step_normal
         along_2 += step_along_2
@@ -70,10 +76,10 @@ def planar_mode_rhs(kernel, t, x, dx, work):
     if kernel.heavy:
         for i in range(n):
             weight += kernel.weights[1, i] * steps_normal[i] - kernel.weights[0, i] * steps_along[i]
-    rate = x[1] / (kernel.mass * (inertia + inertia_2))
+    rate = x[1] / (kernel.inertia + (inertia + inertia_2))
     force = weight - kernel.stiffness * eta - kernel.damping * rate
     if kernel.gyroscopic:
-        force += kernel.mass * (slope - slope_2) * rate * rate
+        force += (slope - slope_2) * rate * rate
     dx[0] = rate
     dx[1] = force
 
@@ -106,7 +112,8 @@ def planar_chain_rhs(kernel, t, x, dx, work):
         u = w = 0.0
         for i in range(n):
             step_u, step_w = -length * kernel.slopes[k, i] * sine[i], length * kernel.slopes[k, i] * cosine[i]
-            column[i], column[n + i] = u + 0.5 * step_u, w + 0.5 * step_w
+            place, root = kernel.places[i], kernel.root_masses[i]
+            column[i], column[n + i] = root * (u + place * step_u), root * (w + place * step_w)
             u += step_u
             w += step_w
         for j in range(k + 1):
@@ -114,7 +121,7 @@ def planar_chain_rhs(kernel, t, x, dx, work):
             total = 0.0
             for i in range(2 * n):
                 total += column[i] * other[i]
-            mass[r * k + j] = kernel.mass * total
+            mass[r * k + j] = total + kernel.inertia[k, j]
         dx[k] = x[r + k]
     solve_positive_definite(mass, dx, r)
 
@@ -130,8 +137,9 @@ def planar_chain_rhs(kernel, t, x, dx, work):
                 normal[i] += jacobian[2 * n * k + n + i] * dx[k]
         u = w = 0.0  # momentum outboard, per element length
         for i in range(n - 1, -1, -1):
-            step_u, step_w = length * kernel.mass * along[i], length * kernel.mass * normal[i]
-            turning[i] -= spin[i] * (cosine[i] * (u + 0.5 * step_u) + sine[i] * (w + 0.5 * step_w))
+            place, root = kernel.places[i], length * kernel.root_masses[i]
+            step_u, step_w = root * along[i], root * normal[i]
+            turning[i] -= spin[i] * (cosine[i] * (u + place * step_u) + sine[i] * (w + place * step_w))
             u += step_u
             w += step_w
     for k in range(r):

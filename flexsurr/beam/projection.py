@@ -66,7 +66,9 @@ class Projection:
 
     @property
     def only_twists(self) -> bool:
-        """Whether the tip stays where it is, whatever the coordinates: they move joints in torsion alone."""
+        """Whether the tip stays where it is, whatever the coordinates: torsion alone, of a straight axis."""
+        if not self.structure.straight:
+            return False
         kinds = np.repeat(self.structure.ordered_joints, self.structure.elements)
         others = np.abs(self.modes[kinds != "torsion"])
         return bool(np.all(others < _ROUNDING * np.max(np.abs(self.modes))))

@@ -7,7 +7,9 @@ The gyroscopic term needs no second derivative. With v the velocities of the mas
     g_j = a_j · (p_j × Ω_j)                     for a stretch along it
 
 where p_j and L_j are momentum and angular momentum about the joint of all masses from it outwards, Ω_j the
-angular velocity that carries the axis, and Ṗ_j the joint's velocity.
+angular velocity that carries the axis, and Ṗ_j the joint's velocity. L_j counts the elements' own spin where
+their inertia is exact. The three axes of a rotation vector are carried by the element itself, and move in it
+besides, as its tangent T changes: that adds Ṫᵀ L_j, in the element's frame.
 """
 
 from functools import cached_property
@@ -16,27 +18,51 @@ import numpy as np
 
 from flexsurr.beam.chain import Chain, chain
 from flexsurr.beam.dynamics import BeamModel
-from flexsurr.beam.kinematics import Configuration, Velocities, configuration, cross, velocities
+from flexsurr.beam.kinematics import (
+    Configuration,
+    Velocities,
+    all_joints,
+    configuration,
+    cross,
+    mass_of,
+    rotation_vectors,
+    spin_momenta,
+    velocities,
+)
 from flexsurr.beam.planar import Plane, plane
+from flexsurr.beam.rotation_vector import tangent_rate
 from flexsurr.simulation.rhs import Array
 
 
-def gyroscopic_forces(beam: Chain, at: Configuration, motion: Velocities) -> Array:
-    """½ ∂/∂q (q̇ᵀ M q̇) (n,) at fixed q̇, from the velocities it gives: the g_j of this file's head (eq. 6)."""
-    momenta = beam.element_mass * motion.masses
+def gyroscopic_forces(beam: Chain, at: Configuration, motion: Velocities, q: Array, rates: Array) -> Array:
+    """½ ∂/∂q (q̇ᵀ M q̇) (n,) at q (n,) and fixed q̇ (n,), from the velocities it gives: the g_j above (eq. 6)."""
+    momenta = beam.masses[:, None] * motion.masses
     outboard = _sum_outboard(momenta)
-    angular = _sum_outboard(cross(at.masses, momenta)) - cross(at.nodes[:-1], outboard)
-    psi, theta, phi = motion.spins
-    inboard = np.cumsum(psi + theta + phi, axis=0)
-    carriers = np.array([inboard - psi - theta - phi, inboard - theta - phi, inboard - phi])
+    moments = cross(at.masses, momenta)
+    if beam.tensors is not None:
+        moments = moments + spin_momenta(beam, at, motion.turning[None])[0]
+    angular = _sum_outboard(moments) - cross(at.nodes[:-1], outboard)
+    if beam.by_vector:
+        carriers = motion.turning[None]
+    else:
+        psi, theta, phi = motion.spins
+        before = motion.turning - phi
+        carriers = np.array([before - theta - psi, before - theta, before])
     turning = cross(angular, carriers) - cross(motion.roots, outboard)
-    joints = np.concatenate(
-        [
-            np.sum(at.axes[:3] * turning, axis=-1).ravel(),
-            np.sum(at.axes[3] * cross(outboard, carriers[2]), axis=-1),
-        ]
+    rotations = np.sum(at.axes[:3] * turning, axis=-1)
+    if beam.by_vector:
+        rotations = rotations + _moving_axes(beam, at, angular, q, rates)
+    stretches = np.sum(at.axes[3] * cross(outboard, motion.turning), axis=-1)
+    return np.concatenate([rotations.ravel(), stretches])[beam.rows]
+
+
+def _moving_axes(beam: Chain, at: Configuration, angular: Array, q: Array, rates: Array) -> Array:
+    """(3, N) Ṫᵀ L of ψ, θ and φ."""
+    u, moving = (
+        rotation_vectors(*all_joints(beam, values).reshape(4, beam.elements)[:3]) for values in (q, rates)
     )
-    return joints[beam.rows]
+    about = tangent_rate(u, moving) @ np.swapaxes(at.frames, -1, -2) @ angular[:, :, None]
+    return np.array([about[:, 2, 0], -about[:, 1, 0], about[:, 0, 0]])
 
 
 class VectorisedBeam(BeamModel):
@@ -51,16 +77,17 @@ class VectorisedBeam(BeamModel):
         beam, modes = chain(self.projection.structure), self.projection.modes
         r = self.projection.coordinates
         eta, momenta = x[:r], x[r:]
-        at = configuration(beam, modes @ eta)
+        q = modes @ eta
+        at = configuration(beam, q)
         tangents = velocities(beam, at, self._directions)
-        columns = tangents.masses.reshape(r, 3 * beam.elements)
-        mass = beam.element_mass * (columns @ columns.T) + self.rotary_inertia
+        mass = mass_of(beam, at, tangents) + self.rotary_inertia
         rates = np.asarray(np.linalg.solve(mass, momenta), dtype=np.float64)
         forces = -(self.projection.stiffness @ eta) - self.projection.damping @ rates
         if beam.gravity[2] != 0.0:
-            forces += beam.element_mass * tangents.masses.sum(axis=1) @ beam.gravity
+            forces += (beam.masses @ tangents.masses) @ beam.gravity
         if self.variant == "hamiltonian":
-            forces += modes.T @ gyroscopic_forces(beam, at, tangents.combined(rates))
+            motion = tangents.combined(rates)
+            forces += modes.T @ gyroscopic_forces(beam, at, motion, q, modes @ rates)
         return np.concatenate([rates, forces])
 
 
@@ -84,14 +111,14 @@ class VectorisedPlanarBeam(BeamModel):
         normal = np.array([-np.sin(angles), np.cos(angles)])
         jacobian = (slopes.T[:, None, :] * normal) @ frame.levers.T
         columns = jacobian.reshape(r, -1)
-        mass = frame.element_mass * columns @ columns.T
-        # Without torsion there is no rotary inertia.
+        weighted = columns * np.tile(frame.masses, 2)
+        mass = weighted @ columns.T + frame.rotary_inertia
         rates = momenta / mass[0] if r == 1 else np.linalg.solve(mass, momenta)
         forces = -(self.projection.stiffness @ eta) - self.projection.damping @ rates
         if self._heavy:
             forces += (normal[0] * frame.weights[0] + normal[1] * frame.weights[1]) @ slopes
         if self.variant == "hamiltonian":
-            arms = frame.element_mass * (rates @ columns).reshape(2, -1) @ frame.levers
+            arms = (rates @ weighted).reshape(2, -1) @ frame.levers
             forces += ((slopes @ rates) * (normal[0] * arms[1] - normal[1] * arms[0])) @ slopes
         return np.concatenate([rates, forces])
 

@@ -10,6 +10,8 @@ from flexsurr.config.errors import ConfigurationError
 from flexsurr.config.merging import Source, build
 from flexsurr.config.own_network import OwnNetwork, check_source, read_source, sha256
 from flexsurr.config.reading import read_yaml
+from flexsurr.config.structure import Structure
+from flexsurr.config.structure_file import structure_values
 
 STUDIES = "config/studies"
 
@@ -53,7 +55,8 @@ class StudyFiles:
         try:
             if not (self.root / path).is_file():
                 self.refuse(f"{path!r} is no file; allowed: a YAML file", *key)
-            return build(record, [Source(path, read_yaml(self.root / path, path))])
+            read = structure_values if record is Structure else read_yaml
+            return build(record, [Source(path, read(self.root / path, path))])
         except ConfigurationError as error:
             self.problems += error.problems
             return record.model_construct()

@@ -15,7 +15,7 @@ import numpy as np
 import pandas as pd
 
 from flexsurr.beam import ModalBasis, chain, load_forces, tip_position, tip_twist
-from flexsurr.beam.kinematics import configuration, generalised_forces
+from flexsurr.beam.kinematics import configuration, generalised_forces, tip_up
 from flexsurr.beam.loads import Forces
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import EvaluationSettings, Variant
@@ -59,7 +59,7 @@ def learn_kinematics(basis: ModalBasis, eta: Array, degree: int) -> LearnedKinem
     """Polynomials of total degree ≤ `degree` for everything, from what is seen at η (k, r)."""
     structure = basis.structure
     at = configuration(chain(structure), eta @ basis.modes.T)
-    up = np.swapaxes(at.frames[:, -1], -1, -2) @ chain(structure).clamp[:, 2]
+    up = tip_up(chain(structure), at)
     seen = np.hstack([at.centres.reshape(len(eta), -1), at.nodes[:, -1], up[:, 1:]])
     points = [*(f"centre_{i}" for i in range(1, structure.elements + 1)), "tip"]
     names = (*(f"{point}_{axis}" for point in points for axis in AXES), "tip_y_up", "tip_z_up")

@@ -66,6 +66,7 @@ def _is_elastica(structure: Structure) -> bool:
     """Whether the structure is the plain cantilever that the closed forms describe."""
     return (
         structure.ordered_joints == ("out_of_plane",)
+        and structure.uniform
         and structure.gravity_m_s2 == 0.0
         and structure.clamp_psi_deg == structure.clamp_theta_deg == structure.clamp_phi_deg == 0.0
     )
@@ -83,8 +84,8 @@ def _exact_tip(structure: Structure, load_N: float) -> tuple[float, float]:
 
 def _exact_frequencies(structure: Structure, count: int) -> Array:
     """ω_k = (λ_k/L)² √(EI/μ) with cos λ cosh λ = −1: the clamped-free Euler-Bernoulli beam."""
-    stiffness = structure.section_stiffness("out_of_plane")
-    if not _is_elastica(structure) or stiffness is None:
+    stiffness, mass = structure.section_stiffness("out_of_plane"), structure.mass_per_length_kg_m
+    if not _is_elastica(structure) or stiffness is None or mass is None:
         return np.empty(0)
     # cos λ + 1/cosh λ changes sign once between multiples of π and does not overflow
     roots = np.array(
@@ -93,5 +94,5 @@ def _exact_frequencies(structure: Structure, count: int) -> Array:
             for k in range(count)
         ]
     )
-    omega: Array = (roots / structure.length_m) ** 2 * np.sqrt(stiffness / structure.mass_per_length_kg_m)
+    omega: Array = (roots / structure.length_m) ** 2 * np.sqrt(stiffness / mass)
     return omega

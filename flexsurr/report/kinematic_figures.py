@@ -164,11 +164,15 @@ def _plate(ax: Axes, origin: Array, ends: Array, half_chord: Array, fill: str, f
 
 def _few_elements(structure: Structure, joints: tuple[str, ...]) -> Structure:
     """The structure with few elements, these joints and an unturned clamp: only its lengths are drawn."""
-    stiffness = structure.section_stiffness(structure.ordered_joints[0])
+    stiffness = 1.0
     return structure.model_copy(
         update={
             "elements": DRAWN_ELEMENTS,
             "joints": joints,
+            "joint_rotation": "sequence",
+            "along_span": None,
+            "point_masses": (),
+            "mass_per_length_kg_m": 1.0,
             "bending_stiffness_in_plane_N_m2": stiffness,
             "bending_stiffness_out_of_plane_N_m2": stiffness,
             "torsional_stiffness_N_m2": stiffness,

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from flexsurr.beam import ModalBasis, tip_position, tip_twist
-from flexsurr.config.structure import Structure
+from flexsurr.config.structure import BEFORE, Structure
 from flexsurr.simulation.rhs import Array
 from flexsurr.surrogates import Surrogate
 from flexsurr.surrogates.saved import load_about, save
@@ -81,7 +81,7 @@ def _saved(surrogate: Surrogate, about: dict[str, Any], arrays: dict[str, np.nda
     basis = None
     if "structure" in about:
         basis = ModalBasis.of(
-            Structure.model_validate(about["structure"]),
+            Structure.model_validate(BEFORE | about["structure"]),
             arrays["equilibrium"],
             arrays["modes"],
             arrays["omega_rad_s"],

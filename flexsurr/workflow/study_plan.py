@@ -153,6 +153,10 @@ class FieldPlan(StudyPlan):
         """What stands in the place of a dataset, if anything does."""
         return {}
 
+    def ranges(self, data: str) -> str:
+        """A hash of it."""
+        return digest(self.configurations(data))
+
     @cached_property
     def sweeps(self) -> dict[str, dict[str, Run]]:
         """The runs of each sweep by their run_id."""
@@ -161,7 +165,7 @@ class FieldPlan(StudyPlan):
             dataset = self.dataset_of(sweep)
             for variant in self.variants:
                 folder = data_folder(variant, dataset)
-                data, ranges = digest(self.manifest(folder)), digest(self.configurations(folder))
+                data, ranges = digest(self.manifest(folder)), self.ranges(folder)
                 for trial in trials:
                     key = run_id(trial, self.name, variant, ranges if configurations_of(trial) else data)
                     sweeps[sweep][key] = Run(self.name, variant, dataset, trial)
@@ -177,7 +181,7 @@ class FieldPlan(StudyPlan):
             "study": self.name,
             "variant": run.variant,
             "dataset": CONFIGURATIONS if sampled else run.dataset,
-            "data": digest(values if sampled else self.manifest(run.data)),
+            "data": self.ranges(run.data) if sampled else digest(self.manifest(run.data)),
             "trial": run.trial.model_dump(mode="json"),
         }
 

@@ -91,7 +91,7 @@ class TrajectoryPlan(FieldPlan):
         first = int(shard) * dataset.trajectories_per_shard
         return {
             **self._dataset(data),
-            "configuration": digest(self._dataset(data)),
+            "configuration": self._configuration(data),
             "first": first,
             "count": min(dataset.trajectories_per_shard, dataset.trajectories - first),
         }
@@ -103,7 +103,7 @@ class TrajectoryPlan(FieldPlan):
             "study": self.name,
             "variant": _variant(data),
             "seed": settings.seed,
-            "configuration": digest(self._dataset(data)),
+            "configuration": self._configuration(data),
             "shards": settings.dataset.shards,
             "trajectories": settings.dataset.trajectories,
             "split_by": settings.dataset.split_by,
@@ -113,6 +113,10 @@ class TrajectoryPlan(FieldPlan):
     def configurations(self, data: str) -> Job:
         """What stands in the place of a dataset: a structure, and ranges of its configurations."""
         return {**self._part(()), "part": values_of(self._settings(data), SAMPLED)}
+
+    def ranges(self, data: str) -> str:
+        """A hash of it, the same for what was so before."""
+        return digest(self.configurations(data) | {"structure": self.resolved.structure.identity})
 
     def score(self, key: str) -> Job:
         """Held-out errors and long responses of one run."""
@@ -172,6 +176,10 @@ class TrajectoryPlan(FieldPlan):
     def _dataset(self, data: str) -> Job:
         part = values_of(self._settings(data), DATASET)
         return {**self._structure(), "part": part, "study": self.name, "variant": _variant(data)}
+
+    def _configuration(self, data: str) -> str:
+        """A hash of all that the trajectories of a dataset depend on."""
+        return digest(self._dataset(data) | {"structure": self.resolved.structure.identity})
 
     def _settings(self, data: str) -> Study:
         """The study as if the dataset in the folder `data` were its only one."""
