@@ -14,7 +14,6 @@ from time import perf_counter
 import numpy as np
 
 from flexsurr.beam import ModalBasis, natural_modes, reduce, reduced_order, tip_position
-from flexsurr.config.structure import Structure
 from flexsurr.config.structure_file import read_structure
 from flexsurr.config.study import InitialConditions, Integrator, Reduction
 from flexsurr.simulation import simulate

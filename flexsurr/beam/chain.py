@@ -66,7 +66,7 @@ class Chain:
 
     @cached_property
     def uniform(self) -> bool:
-        """Whether all elements are alike and straight, lumped masses that turn about z, −y and x in sequence."""
+        """Whether all elements are alike and straight, and lumped masses that turn joint by joint."""
         alike = all(
             np.ptp(part, axis=0).max() == 0.0 for part in (self.masses, self.arms, self.torsion_inertia)
         )
@@ -128,7 +128,7 @@ def _axis(structure: Structure) -> tuple[Array, Array | None, Array, Array]:
     roots = points[:-2:2]
     if points[0].any():
         raise ValueError(
-            f"{structure.name}: elastic_axis_offset_m: begins {points[0][1]:g} m from the clamp; allowed: 0 there"
+            f"{structure.name}: elastic_axis_offset_m: {points[0][1]:g} at the clamp; allowed: 0 there"
         )
     spans, middles = ((back @ (to - roots)[:, :, None])[:, :, 0] for to in (points[2::2], points[1::2]))
     return frames, np.swapaxes(before, 1, 2) @ frames, spans, middles
@@ -143,7 +143,7 @@ def _bodies(structure: Structure, frames: Array, middles: Array) -> tuple[Array,
     n, length = structure.elements, structure.length_m
     if structure.along_span is None:
         masses = np.full(n, (structure.mass_per_length_kg_m or 0.0) * length / n)
-        arms = middles + [0.0, structure.centre_of_gravity_offset_m, 0.0]
+        arms = middles + np.array([0.0, structure.centre_of_gravity_offset_m, 0.0])
         about_x, about_y = (getattr(structure, key) * length / n for key in _INERTIA)
         tensors = np.tile(np.diag([about_x, about_y, about_x - about_y]), (n, 1, 1))
     else:
@@ -251,7 +251,8 @@ def damping_matrix(structure: Structure) -> Array:
 def rotary_inertia(structure: Structure) -> Array:
     """I (n, n) [kg m²]: constant, in torsion only, Tᵀ diag(I0 l) T with T lower triangular ones (eq. 3).
 
-    Zero where the inertia is exact. It counts each element's twist rate as the sum of the torsion rates up to it.
+    Zero where the inertia is exact. It counts each element's twist rate as the sum of the torsion rates up
+    to it.
     """
     beam = chain(structure)
     inertia = np.zeros((4 * beam.elements, 4 * beam.elements))

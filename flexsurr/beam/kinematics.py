@@ -2,8 +2,8 @@
 
 Every function broadcasts over leading axes of q and takes complex q as well, for complex steps.
 Element i is turned by R_i = R_clamp Π_{j≤i} B_j R_z(ψ_j) R_y'(θ_j) R_x(φ_j), or by one rotation vector
-(φ, −θ, ψ) in place of the three; B is the fixed turn of a curved axis. Then its stretch s_i moves it along its
-own axis.
+(φ, −θ, ψ) in place of the three; B is the fixed turn of a curved axis. Then its stretch s_i moves it along
+its own axis.
 """
 
 from dataclasses import dataclass
@@ -101,7 +101,7 @@ def tip_twist(structure: Structure, q: Array) -> Array:
 
 
 def tip_up(beam: Chain, at: Configuration) -> Array:
-    """(..., 3) the rise along the clamp's z of the axes that were the clamp's own on the unloaded last element."""
+    """(..., 3) how the last element's axes, unloaded those of the clamp, rise along the clamp's z."""
     return np.asarray(np.swapaxes(at.frames[..., -1, :, :] @ beam.undeformed.T, -1, -2) @ beam.clamp[:, 2])
 
 
@@ -186,7 +186,9 @@ def mass_of(beam: Chain, at: Configuration, motion: Velocities) -> Array:
     columns = _columns(np.sqrt(beam.masses)[:, None] * motion.masses)
     mass = columns @ np.swapaxes(columns, -1, -2)
     if beam.tensors is not None:
-        mass = mass + _columns(motion.turning) @ np.swapaxes(_columns(spin_momenta(beam, at, motion.turning)), -1, -2)
+        mass = mass + _columns(motion.turning) @ np.swapaxes(
+            _columns(spin_momenta(beam, at, motion.turning)), -1, -2
+        )
     return np.asarray(mass)
 
 

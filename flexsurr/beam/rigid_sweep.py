@@ -16,10 +16,10 @@ from flexsurr.beam.trigonometry import sine_cosine
 from flexsurr.simulation.linear_solvers import solve_positive_definite
 from flexsurr.simulation.rhs import FLOATING_POINT, Array, implements_rhs
 
-# What `sweep_bodies` keeps of each element, vectors in the clamp's frame before it is turned: angular velocity
-# for unit rates of ψ, θ and φ (0, 3, 6); the stretch's direction (9); from the root to the next node (12), to
-# the centre of gravity (15); the element's x, y and z (18, 21, 24); from the root to its middle (27). Of a
-# rotation vector besides: itself (30), c₂, c₃ and their slopes over |u|² (33 to 36).
+# What `sweep_bodies` keeps of each element, vectors in the clamp's frame before it is turned: angular
+# velocities for unit rates of ψ, θ and φ (0, 3, 6); the stretch's direction (9); from the root to the next
+# node (12) and to the centre of gravity (15); the element's x, y and z (18, 21, 24); from the root to its
+# middle (27). Of a rotation vector besides: itself (30), c₂, c₃ and their slopes over |u|² (33 to 36).
 BODY = 37
 
 
@@ -188,8 +188,8 @@ def sweep_bodies(modes, elements, x, bodies, work):
 def sweep_body_velocities(bodies, first, rates, roots, masses, turning):
     """Velocities of the centres of gravity (3 N,) for joint rates (4 N,) that are zero before `first`.
 
-    `roots` (6 N,) takes, if it is long enough, the angular velocity and the velocity with which each element's
-    root moves; `turning` (3 N,) likewise the elements' angular velocities in their own frames.
+    `roots` (6 N,) takes, if it is long enough, the angular velocity and the velocity with which each
+    element's root moves; `turning` (3 N,) likewise the elements' angular velocities in their own frames.
     """
     n = masses.shape[0] // 3
     keep, turns = roots.shape[0] > 0, turning.shape[0] > 0

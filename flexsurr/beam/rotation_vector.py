@@ -1,4 +1,4 @@
-"""Rotations by a vector u: about its direction, by its length. Nothing in it has a place where it breaks down.
+"""Rotations by a vector u: about its direction, by its length, down to none.
 
     R(u) = 1 + c₁ [u] + c₂ [u]²                the rotation (Rodrigues)
     T(u) = 1 − c₂ [u] + c₃ [u]²                its tangent: ω = T(u) u̇ in the turned frame, R T = Tᵀ

@@ -35,7 +35,7 @@ from flexsurr.simulation.rhs import Array
 
 
 def gyroscopic_forces(beam: Chain, at: Configuration, motion: Velocities, q: Array, rates: Array) -> Array:
-    """½ ∂/∂q (q̇ᵀ M q̇) (n,) at q (n,) and fixed q̇ (n,), from the velocities it gives: the g_j above (eq. 6)."""
+    """½ ∂/∂q (q̇ᵀ M q̇) (n,) at q (n,) and fixed q̇ (n,), from its velocities: the g_j above (eq. 6)."""
     momenta = beam.masses[:, None] * motion.masses
     outboard = _sum_outboard(momenta)
     moments = cross(at.masses, momenta)

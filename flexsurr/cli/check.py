@@ -1,8 +1,10 @@
 """Check the configuration as snakemake would, and say what it would make."""
 
 import argparse
+import sys
 from pathlib import Path
 
+from flexsurr.beam.soundness import unit_hint
 from flexsurr.cli.command import personal
 from flexsurr.config.settings import load
 from flexsurr.workflow.plan import AnyPlan, Plan
@@ -27,10 +29,15 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def main(configfile: list[str], directory: Path) -> None:
-    """Print a line for each study. Raises ConfigurationError with a line for each mistake."""
+    """Print a line for each study, and on stderr what looks odd of its structure.
+
+    Raises ConfigurationError with a line for each mistake.
+    """
     plan = Plan(load(directory, [str(CONFIG), *configfile]))
     for name, study in plan.studies.items():
         print(f"{name}: {_data(study)}, {len(study.runs)} runs")
+        if isinstance(study, TrajectoryPlan) and (hint := unit_hint(study.resolved.structure)):
+            print(f"{name}: {hint}", file=sys.stderr)
 
 
 def _data(study: AnyPlan) -> str:

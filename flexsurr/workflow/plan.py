@@ -6,6 +6,8 @@ from fnmatch import fnmatch
 from functools import cached_property
 from pathlib import Path
 
+from flexsurr.beam.soundness import check_structure
+from flexsurr.config.errors import ConfigurationError
 from flexsurr.config.settings import Configuration
 from flexsurr.config.sources import AnyStudy, ResolvedSampleStudy, ResolvedStudy
 from flexsurr.report.catalogue import FIGURES, OF_AIRCRAFT, TABLES, Product
@@ -27,6 +29,10 @@ OF_RUNS = {"metrics": "metrics.json", "history": "history.parquet"}
 def _plan_of(study: AnyStudy) -> AnyPlan:
     match study:
         case ResolvedStudy():
+            try:
+                check_structure(study.structure)
+            except ValueError as error:
+                raise ConfigurationError([f"{study.study.structure}: {error}"]) from None
             return TrajectoryPlan(study)
         case ResolvedSampleStudy():
             return SamplePlan(study)
@@ -34,7 +40,10 @@ def _plan_of(study: AnyStudy) -> AnyPlan:
 
 
 class Plan:
-    """Every job of a configuration. Raises ConfigurationError for a sweep whose combinations don't fit."""
+    """Every job of a configuration.
+
+    Raises ConfigurationError for a sweep whose combinations don't fit, and for a structure that cannot move.
+    """
 
     def __init__(self, configuration: Configuration) -> None:
         self.settings = configuration.settings

@@ -7,6 +7,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from flexsurr.beam import ModalBasis, mass_matrix, reduce
+from flexsurr.config.along_span import AlongSpan, PointMass
 from flexsurr.config.load import DistributedForce, Spread, TipForce
 from flexsurr.config.structure import JOINTS, Structure
 from flexsurr.config.study import Reduction
@@ -33,11 +34,77 @@ ALL_JOINTS = Structure(
     torsional_inertia_per_length_kg_m=0.01,
     chord_m=0.2,
     centre_of_gravity_offset_m=0.03,
+    joint_rotation="sequence",
+    rotary_inertia="constant",
     clamp_psi_deg=10.0,
     clamp_theta_deg=20.0,
     clamp_phi_deg=-30.0,
     gravity_m_s2=9.81,
 )
+
+TAPER = AlongSpan(
+    s_m=(0.0, 0.5, 1.2),
+    mass_per_length_kg_m=(0.5, 0.4, 0.2),
+    bending_stiffness_out_of_plane_N_m2=(60.0, 50.0, 20.0),
+    torsional_inertia_per_length_kg_m=(0.02, 0.01, 0.005),
+)
+"""A beam that gets lighter and softer outwards, at its end less so."""
+
+BEND = AlongSpan(
+    s_m=(0.0, 0.5, 1.2),
+    mass_per_length_kg_m=(0.5, 0.4, 0.2),
+    torsional_inertia_per_length_kg_m=(0.02, 0.01, 0.005),
+    inertia_about_y_per_length_kg_m=(0.004, 0.003, 0.001),
+    chord_m=(0.3, 0.2, 0.2),
+    centre_of_gravity_offset_m=(0.0, 0.03, -0.05),
+    elastic_axis_offset_m=(0.0, 0.01, -0.02),
+    axis_psi_deg=(0.0, 20.0, 40.0),
+    axis_theta_deg=(5.0, 5.0, 20.0),
+    axis_phi_deg=(0.0, 10.0, 30.0),
+)
+"""Everything that may vary does; its axis is swept, bent and twisted."""
+
+ENGINE = PointMass(
+    at_m=0.7,
+    mass_kg=0.2,
+    offset_m=(0.05, 0.02, -0.1),
+    inertia_kg_m2=(0.01, 0.012, 0.015),
+    products_of_inertia_kg_m2=(0.001, 0.002, -0.001),
+)
+
+_IN_TABLE = {
+    "mass_per_length_kg_m": None,
+    "bending_stiffness_out_of_plane_N_m2": None,
+    "torsional_inertia_per_length_kg_m": 0.0,
+    "centre_of_gravity_offset_m": 0.0,
+    "chord_m": 0.1,
+}
+"""What is left to a table: the defaults of these keys."""
+
+FORMS: tuple[dict[str, object], ...] = (
+    {},
+    {"joint_rotation": "vector"},
+    {"rotary_inertia": "exact", "inertia_about_y_per_length_kg_m": 0.003},
+    {"joint_rotation": "vector", "rotary_inertia": "exact"},
+    {**_IN_TABLE, "along_span": TAPER},
+    {**_IN_TABLE, "along_span": TAPER, "joint_rotation": "vector", "rotary_inertia": "exact"},
+    {
+        **_IN_TABLE,
+        "bending_stiffness_out_of_plane_N_m2": 50.0,
+        "along_span": BEND,
+        "rotary_inertia": "exact",
+        "point_masses": (ENGINE,),
+    },
+    {
+        **_IN_TABLE,
+        "bending_stiffness_out_of_plane_N_m2": 50.0,
+        "along_span": BEND,
+        "joint_rotation": "vector",
+        "rotary_inertia": "exact",
+        "point_masses": (ENGINE,),
+    },
+)
+"""The study's own form first, then each that differs from it, and all together."""
 
 SUBSETS = [subset for size in range(1, 5) for subset in combinations(JOINTS, size)]
 
@@ -64,6 +131,12 @@ def structures(**fixed: object) -> st.SearchStrategy[Structure]:
     }
     drawn.update({key: st.just(value) for key, value in fixed.items()})
     return st.fixed_dictionaries(drawn).map(lambda values: change(ALL_JOINTS, **values))
+
+
+def any_structures(**fixed: object) -> st.SearchStrategy[Structure]:
+    """The same in any form: with properties along the span, bodies fixed to it, a bent axis, any joints."""
+    of_form = st.sampled_from(FORMS)
+    return st.tuples(structures(**fixed), of_form).map(lambda drawn: change(drawn[0], **drawn[1]))
 
 
 def coordinates(structure: Structure, seed: int) -> np.ndarray:

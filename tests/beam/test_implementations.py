@@ -2,13 +2,24 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from structures import CANTILEVER, SEEDS, basis_of, change, state, structures
+from structures import (
+    ALL_JOINTS,
+    CANTILEVER,
+    FORMS,
+    SEEDS,
+    any_structures,
+    basis_of,
+    change,
+    state,
+    structures,
+)
 
 from flexsurr.beam import full_order, reduced_order
-from flexsurr.beam.compiled import planar_kernel, planar_mode_kernel, spatial_kernel
-from flexsurr.beam.planar_sweep import planar_work_size
+from flexsurr.beam.compiled import planar_kernel, planar_mode_kernel, rigid_kernel, spatial_kernel
+from flexsurr.beam.planar_sweep import PlanarChain, planar_work_size
 from flexsurr.beam.projection import projection
-from flexsurr.beam.spatial_sweep import spatial_work_size
+from flexsurr.beam.rigid_sweep import RigidChain, rigid_work_size
+from flexsurr.beam.spatial_sweep import SpatialChain, spatial_work_size
 from flexsurr.beam.vectorised import VectorisedBeam
 from flexsurr.simulation import CompiledModel, Model, evaluate
 
@@ -23,7 +34,7 @@ def assert_close(found, expected):
 
 
 @settings(max_examples=60)
-@given(structures(), VARIANTS, SEEDS)
+@given(any_structures(), VARIANTS, SEEDS)
 def test_full_order_implementations_agree(structure, variant, seed):
     described, vectorised, compiled = (
         full_order(structure, variant, kind) for kind in ("described", "numpy", "compiled")
@@ -35,7 +46,7 @@ def test_full_order_implementations_agree(structure, variant, seed):
 
 
 @settings(max_examples=60)
-@given(structures(), VARIANTS, st.integers(1, 4), st.sampled_from(["unit", "mass"]), SEEDS)
+@given(any_structures(), VARIANTS, st.integers(1, 4), st.sampled_from(["unit", "mass"]), SEEDS)
 def test_reduced_order_implementations_agree(structure, variant, modes, normalisation, seed):
     basis = basis_of(structure, modes, normalisation)
     described, vectorised, compiled = (
@@ -59,6 +70,35 @@ def test_planar_kernels_are_the_general_one(structure, joint, seed):
     assert_close(planar, general)
     assert_close(mode, general)
     assert_close(VectorisedBeam(space, "hamiltonian").derivative(0.0, x), general)
+
+
+@settings(max_examples=30)
+@given(structures(), SEEDS)
+def test_the_kernel_of_uniform_chains_is_the_one_of_any(structure, seed):
+    space = projection(structure)
+    x = state(structure, seed)
+    uniform = derivative(spatial_kernel(space, True), x, spatial_work_size(structure.elements, len(x) // 2))
+    any_chain = derivative(rigid_kernel(space, True), x, rigid_work_size(structure.elements, len(x) // 2))
+    assert_close(uniform, any_chain)
+
+
+@settings(max_examples=30)
+@given(any_structures(), st.sampled_from(["in_plane", "out_of_plane"]), SEEDS)
+def test_planar_kernels_are_the_one_of_any_chain(structure, joint, seed):
+    """Where properties vary, too; a chain that leaves its plane has the general kernel."""
+    basis = basis_of(change(structure, joints=(joint,)), 1)
+    space = projection(basis)
+    x = state(basis, seed)
+    general = derivative(rigid_kernel(space, True), x, rigid_work_size(structure.elements, 1))
+    model = reduced_order(basis, "hamiltonian", "compiled")
+    assert_close(derivative(model.kernel, x, model.work_size), general)
+
+
+def test_each_chain_has_the_least_kernel_that_holds_it():
+    kinds = [type(full_order(change(ALL_JOINTS, **form), "hamiltonian", "compiled").kernel) for form in FORMS]
+    assert kinds == [SpatialChain] + [RigidChain] * (len(FORMS) - 1)
+    tapered = change(ALL_JOINTS, **FORMS[5], joints=("out_of_plane",))
+    assert isinstance(full_order(tapered, "hamiltonian", "compiled").kernel, PlanarChain)
 
 
 def derivative(kernel, x, work_size):

@@ -2,7 +2,17 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from structures import ALL_JOINTS, CANTILEVER, SUBSETS, basis_of, change, structures, tip_force
+from structures import (
+    ALL_JOINTS,
+    CANTILEVER,
+    FORMS,
+    SUBSETS,
+    any_structures,
+    basis_of,
+    change,
+    structures,
+    tip_force,
+)
 
 from flexsurr.beam import (
     EquilibriumNotFound,
@@ -46,7 +56,7 @@ def test_the_published_reduced_cantilever():
     )
 
 
-@given(structures())
+@given(any_structures())
 def test_modes_diagonalise_mass_and_stiffness(structure):
     structure = change(structure, gravity_m_s2=0.0)
     q = np.zeros(structure.coordinates)
@@ -60,8 +70,16 @@ def test_modes_diagonalise_mass_and_stiffness(structure):
 @pytest.mark.parametrize("about_equilibrium", [False, True])
 @pytest.mark.parametrize("joints", SUBSETS)
 def test_frequencies_are_those_of_the_linearised_model(joints, about_equilibrium):
+    check_linearised(change(ALL_JOINTS, joints=joints, gravity_m_s2=9.81 if about_equilibrium else 0.0))
+
+
+@pytest.mark.parametrize("form", range(1, len(FORMS)))
+def test_so_are_those_of_any_form(form):
+    check_linearised(change(ALL_JOINTS, **FORMS[form]))
+
+
+def check_linearised(structure):
     """Eigenvalues of the full-order model's Jacobian, by central differences, are ±iω."""
-    structure = change(ALL_JOINTS, joints=joints, gravity_m_s2=9.81 if about_equilibrium else 0.0)
     q = find_equilibrium(structure)
     omega, _ = natural_modes(structure, q)
     model = full_order(structure, "hamiltonian", "compiled")

@@ -1,15 +1,17 @@
 """The chain against Pinocchio's rigid-body algorithms: all four joints, lumped masses, springs aside.
 
-The rotary inertia is taken off the mass matrix for the comparison: it is counted along the chain as a
-constant matrix, which no set of rigid bodies reproduces. Being constant, it adds to no force.
+A constant rotary inertia is taken off the mass matrix for the comparison: it is counted along the chain as a
+constant matrix, which no set of rigid bodies reproduces. Being constant, it adds to no force. An exact one is
+that of the bodies.
 """
 
 import numpy as np
 import pinocchio
 import pytest
-from structures import ALL_JOINTS, change
+from structures import ALL_JOINTS, FORMS, change, coordinates
 
 from flexsurr.beam import chain, full_order, mass_matrix, rotary_inertia, stiffness_matrix
+from flexsurr.beam.rotation_vector import rotation
 
 ELEMENTS = 5
 STRUCTURES = {
@@ -24,28 +26,34 @@ STRUCTURES = {
         centre_of_gravity_offset_m=0.267,
         torsional_inertia_per_length_kg_m=0.1,
     ),
+    "exact inertia": change(ALL_JOINTS, **FORMS[2], elements=ELEMENTS),
+    "bent, with an engine": change(ALL_JOINTS, **FORMS[-2], elements=ELEMENTS),
 }
 
 
 def rigid_body_model(structure):
     model = pinocchio.Model()
     beam = chain(structure)
-    length = beam.element_length
-    placement = pinocchio.SE3(np.array(beam.clamp), np.zeros(3))
-    body = pinocchio.Inertia(beam.element_mass, np.array([length / 2, beam.offset, 0.0]), np.zeros((3, 3)))
+    turns = np.tile(np.eye(3), (ELEMENTS, 1, 1)) if beam.turns is None else beam.turns
+    node = pinocchio.SE3(np.array(beam.clamp), np.zeros(3))
     parent = 0
     for i in range(ELEMENTS):
+        placement = node * pinocchio.SE3(np.array(turns[i]), np.zeros(3))
+        tensor = np.zeros((3, 3)) if beam.tensors is None else np.array(beam.tensors[i])
+        body = pinocchio.Inertia(beam.masses[i], np.array(beam.arms[i]), tensor)
         joints = [
             pinocchio.JointModelRZ(),
             pinocchio.JointModelRevoluteUnaligned(np.array([0.0, -1.0, 0.0])),
             pinocchio.JointModelRX(),
-            pinocchio.JointModelPX(),
         ]
+        if beam.by_vector:
+            joints = [pinocchio.JointModelSpherical()]
+        joints.append(pinocchio.JointModelPrismaticUnaligned(np.array(beam.stretches[i])))
         for kind, joint in enumerate(joints):
             parent = model.addJoint(parent, joint, placement, f"{kind}_{i}")
             placement = pinocchio.SE3.Identity()
         model.appendBodyToJoint(parent, body, pinocchio.SE3.Identity())
-        placement = pinocchio.SE3(np.eye(3), np.array([length, 0.0, 0.0]))
+        node = pinocchio.SE3(np.eye(3), np.array(beam.spans[i]))
     model.gravity.linear = np.array(beam.gravity)
     return model
 
@@ -85,3 +93,21 @@ def test_mass_matrix_and_all_forces(name, seed):
         scale = np.abs(gyroscopic).max()
         np.testing.assert_allclose(forces, gyroscopic, rtol=0.0, atol=1e-9 * scale)
         np.testing.assert_allclose(dropped[len(q) :][ORDER], weight + springs, rtol=0.0, atol=1e-9 * scale)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_mass_matrix_of_rotation_vectors(seed):
+    """Of ball joints, whose rates are angular velocities: u̇ makes them by its tangent, columns of T."""
+    structure = change(ALL_JOINTS, **FORMS[-1], elements=ELEMENTS)
+    q = coordinates(structure, seed)
+    psi, theta, phi, stretch = q.reshape(4, ELEMENTS)
+    turns, tangents = rotation(np.stack([phi, -theta, psi], axis=-1))
+    at, of_rates = [], np.zeros((4 * ELEMENTS, 4 * ELEMENTS))
+    for i in range(ELEMENTS):
+        at += [*pinocchio.Quaternion(turns[i]).coeffs(), stretch[i]]
+        of_rates[4 * i : 4 * i + 3, i::ELEMENTS][:, :3] = tangents[i] @ [[0, 0, 1], [0, -1, 0], [1, 0, 0]]
+        of_rates[4 * i + 3, 3 * ELEMENTS + i] = 1.0
+    model = rigid_body_model(structure)
+    mass = pinocchio.crba(model, model.createData(), np.array(at))
+    mass = of_rates.T @ (np.triu(mass) + np.triu(mass, 1).T) @ of_rates
+    np.testing.assert_allclose(mass_matrix(structure, q), mass, atol=1e-12 * np.abs(mass).max())

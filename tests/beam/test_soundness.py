@@ -1,0 +1,40 @@
+import numpy as np
+import pytest
+from structures import ALL_JOINTS, CANTILEVER, FORMS, change
+
+from flexsurr.beam.soundness import check_structure, unit_hint
+
+
+@pytest.mark.parametrize("form", range(len(FORMS)))
+def test_sound_structures_pass(form):
+    structure = change(ALL_JOINTS, **FORMS[form])
+    check_structure(structure)
+    assert unit_hint(structure) == ""
+
+
+def test_a_joint_that_moves_no_mass_is_named():
+    """Torsion whose masses lie on the axis but for one body, which bending out of plane moves alike."""
+    massless = ALL_JOINTS.model_copy(
+        update={"torsional_inertia_per_length_kg_m": 0.0, "centre_of_gravity_offset_m": 0.0}
+    )
+    with pytest.raises(ValueError, match="joints: 'torsion' moves no mass of its own"):
+        check_structure(massless)
+
+
+def test_a_structure_that_buckles_under_its_own_weight_is_refused():
+    pole = change(CANTILEVER, clamp_theta_deg=90.0, gravity_m_s2=9.81, mass_per_length_kg_m=60.0)
+    with pytest.raises(
+        ValueError, match=r"gravity_m_s2: cantilever: buckles under 6[5-9]\.?\d* % of its own"
+    ):
+        check_structure(pole)
+    # Greenhill: q L³ / EI = 7.837
+    least = 7.837 * 50.0 / 9.81
+    check_structure(change(pole, mass_per_length_kg_m=0.95 * least))
+
+
+@pytest.mark.parametrize("factor", [1e-9, 1e9])
+def test_units_mistaken_give_a_hint(factor):
+    odd = change(CANTILEVER, bending_stiffness_out_of_plane_N_m2=50.0 * factor)
+    check_structure(odd)
+    assert f"the first frequency of cantilever is {55.63 * np.sqrt(factor):.3g} rad/s" in unit_hint(odd)
+    assert "rad/s: are lengths in m" in unit_hint(odd)
