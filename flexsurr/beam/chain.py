@@ -65,6 +65,16 @@ class Chain:
         return axes
 
     @cached_property
+    def root_masses(self) -> Array:
+        """(N, 1) roots of the masses [kg½]."""
+        return np.sqrt(self.masses)[:, None]
+
+    @cached_property
+    def places(self) -> Array:
+        """(N, 3, 4) `stretches`, `spans`, `middles` and `arms` as columns, to turn them in one go."""
+        return np.stack([self.stretches, self.spans, self.middles, self.arms], axis=-1)
+
+    @cached_property
     def uniform(self) -> bool:
         """Whether all elements are alike and straight, and lumped masses that turn joint by joint."""
         alike = all(

@@ -45,7 +45,7 @@ def configuration(beam: Chain, q: Array) -> Configuration:
         frame = frame @ turns[..., i, :, :]
         frames[..., i, :, :] = frame
 
-    along = _turned(frames, beam.stretches)
+    along, spans, middles, arms = np.moveaxis(frames @ beam.places, -1, 0)
     if beam.by_vector:
         about = frames @ tangents
         axes = np.stack([about[..., 2], -about[..., 1], about[..., 0], along], axis=-3)
@@ -56,15 +56,9 @@ def configuration(beam: Chain, q: Array) -> Configuration:
 
     stretching = stretch[..., None] * along
     nodes = np.zeros((*q.shape[:-1], n + 1, 3), dtype=q.dtype)
-    np.cumsum(_turned(frames, beam.spans) + stretching, axis=-2, out=nodes[..., 1:, :])
+    np.cumsum(spans + stretching, axis=-2, out=nodes[..., 1:, :])
     moved_roots = nodes[..., :-1, :] + stretching
-    return Configuration(
-        axes,
-        frames,
-        nodes,
-        moved_roots + _turned(frames, beam.middles),
-        moved_roots + _turned(frames, beam.arms),
-    )
+    return Configuration(axes, frames, nodes, moved_roots + middles, moved_roots + arms)
 
 
 def all_joints(beam: Chain, q: Array) -> Array:
@@ -77,11 +71,6 @@ def all_joints(beam: Chain, q: Array) -> Array:
 def rotation_vectors(psi: Array, theta: Array, phi: Array) -> Array:
     """(..., 3) (φ, −θ, ψ): about x, about −y, about z."""
     return np.stack([phi, -theta, psi], axis=-1)
-
-
-def _turned(frames: Array, vectors: Array) -> Array:
-    """(..., N, 3) vectors (N, 3) in the elements' frames (..., N, 3, 3), in the clamp's."""
-    return np.asarray((frames @ vectors[:, :, None])[..., 0])
 
 
 def tip_position(structure: Structure, q: Array) -> Array:
@@ -126,8 +115,10 @@ class Velocities:
 
     def combined(self, weights: Array) -> "Velocities":
         """The velocities for the sum of the sets, each times its weight (k,)."""
-        parts = (self.spins, self.turning, self.roots, self.masses)
-        return Velocities(*(np.tensordot(weights, part, 1) for part in parts))
+        spins, roots, masses = (
+            np.tensordot(weights, part, 1) for part in (self.spins, self.roots, self.masses)
+        )
+        return Velocities(spins, np.cumsum(spins.sum(axis=0), axis=0), roots, masses)
 
 
 def velocities(beam: Chain, at: Configuration, rates: Array) -> Velocities:
@@ -183,7 +174,7 @@ def projected_mass(beam: Chain, at: Configuration, modes: Array) -> Array:
 
 def mass_of(beam: Chain, at: Configuration, motion: Velocities) -> Array:
     """(..., r, r) of the same, from the velocities for each mode."""
-    columns = _columns(np.sqrt(beam.masses)[:, None] * motion.masses)
+    columns = _columns(beam.root_masses * motion.masses)
     mass = columns @ np.swapaxes(columns, -1, -2)
     if beam.tensors is not None:
         mass = mass + _columns(motion.turning) @ np.swapaxes(

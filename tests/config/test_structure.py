@@ -4,7 +4,7 @@ import pytest
 import yaml
 
 from flexsurr.config.errors import ConfigurationError
-from flexsurr.config.structure import Structure
+from flexsurr.config.structure import BEFORE, Structure
 from flexsurr.config.structure_file import read_structure
 
 BEAM = {
@@ -120,6 +120,7 @@ def assert_refused(path, parts):
 
 def test_what_came_later_does_not_rename_what_was_before():
     before = Structure(**BEAM, mass_per_length_kg_m=0.2, joint_rotation="sequence", rotary_inertia="constant")
+    assert Structure.model_validate(BEFORE | before.identity) == before
     later = {
         "along_span",
         "point_masses",
