@@ -151,7 +151,7 @@ def rigid_elements(beam: Chain) -> RigidElements:
 def first_moved(modes: Array) -> NDArray[np.int64]:
     """(r,) the first element that each of the modes (r, 4 N) moves."""
     moves = np.any(modes.reshape(len(modes), 4, -1) != 0.0, axis=1)
-    return np.argmax(moves, axis=1).astype(np.int64)
+    return np.asarray(np.argmax(moves, axis=1), dtype=np.int64)
 
 
 def all_joints(projection: Projection) -> Array:

@@ -5,7 +5,9 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
-from flexsurr.config.along_span import AlongSpan, NotNegative, PointMass, Positive
+from flexsurr.config.along_span import AlongSpan, PointMass
+from flexsurr.config.along_span import NotNegative as NotNegative
+from flexsurr.config.along_span import Positive as Positive
 from flexsurr.config.schema import Record
 
 Joint = Literal["in_plane", "out_of_plane", "torsion", "axial"]
