@@ -10,6 +10,7 @@ cosines over powers of the angle without the division. They satisfy
 """
 
 import math
+from typing import Any
 
 import numpy as np
 from numba import njit
@@ -22,10 +23,10 @@ _C4 = tuple((-1.0) ** j / math.factorial(4 + 2 * j) for j in range(_TERMS))
 _C5 = tuple((-1.0) ** j / math.factorial(5 + 2 * j) for j in range(_TERMS))
 
 
-def stumpff(s: Array) -> tuple[Array, Array, Array, Array, Array]:
-    """c₁ … c₅ at s (...,), of real or complex values."""
-    c4, c5 = np.zeros_like(s), np.zeros_like(s)
-    for of_4, of_5 in zip(reversed(_C4), reversed(_C5), strict=True):
+def stumpff(s: Any) -> tuple[Any, Any, Any, Any, Any]:
+    """c₁ … c₅ at s, whatever adds and multiplies: real or complex numbers (...,), expressions of them."""
+    c4, c5 = _C4[-2] + _C4[-1] * s, _C5[-2] + _C5[-1] * s
+    for of_4, of_5 in zip(_C4[-3::-1], _C5[-3::-1], strict=True):
         c4, c5 = of_4 + s * c4, of_5 + s * c5
     c3 = 1.0 / 6.0 - s * c5
     return 1.0 - s * c3, 0.5 - s * c4, c3, c4, c5

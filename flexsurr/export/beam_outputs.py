@@ -4,6 +4,7 @@ import numpy as np
 
 from flexsurr.beam import ModalBasis
 from flexsurr.beam.chain import chain
+from flexsurr.beam.rotation_vector import stumpff
 from flexsurr.export.expressions import Value, concat, constant, each
 
 ENTRIES = 9  # of a turn
@@ -20,19 +21,35 @@ def tip(basis: ModalBasis, eta: Value) -> tuple[Value, Value]:
     modes[beam.rows] = basis.modes
     joints = eta @ modes.T
     psi, theta, phi, stretch = (joints[k * n : (k + 1) * n] for k in range(4))
-    cz, sz, cy, sy, cx, sx = (each(of, angle) for angle in (psi, theta, phi) for of in ("cos", "sin"))
-    # R_z(ψ) R_y'(θ) R_x(φ) of all elements, entry by entry, and then element by element
-    entries = concat([
-        cz * cy, -sz * cx - cz * sy * sx, sz * sx - cz * sy * cx,
-        sz * cy, cz * cx - sz * sy * sx, -cz * sx - sz * sy * cx,
-        sy, cy * sx, cy * cx,
-    ])  # fmt: skip
-    turns = entries.reshape(ENTRIES, n).T
+    entries = _of_vectors(phi, -theta, psi) if beam.by_vector else _of_sequences(psi, theta, phi)
+    turns = concat(entries).reshape(ENTRIES, n).T
     frame = constant(beam.clamp)
     along = []
     for i in range(n):
+        if beam.turns is not None:
+            frame = frame @ constant(beam.turns[i])
         frame = frame @ turns[i].reshape(3, 3)
-        along.append(frame[:, 0])
+        along.append(frame @ beam.stretches[i])
     steps = concat(along).reshape(n, 3)
-    up = beam.clamp[:, 2] @ frame
-    return (stretch + beam.element_length) @ steps, each("atan2", up[1], up[2])
+    up = beam.clamp[:, 2] @ (frame @ constant(beam.undeformed.T))
+    return (stretch + np.linalg.norm(beam.spans, axis=1)) @ steps, each("atan2", up[1], up[2])
+
+
+def _of_sequences(psi: Value, theta: Value, phi: Value) -> list[Value]:
+    """R_z(ψ) R_y'(θ) R_x(φ) of all elements (n,), entry by entry."""
+    cz, sz, cy, sy, cx, sx = (each(of, angle) for angle in (psi, theta, phi) for of in ("cos", "sin"))
+    return [
+        cz * cy, -sz * cx - cz * sy * sx, sz * sx - cz * sy * cx,
+        sz * cy, cz * cx - sz * sy * sx, -cz * sx - sz * sy * cx,
+        sy, cy * sx, cy * cx,
+    ]  # fmt: skip
+
+
+def _of_vectors(x: Value, y: Value, z: Value) -> list[Value]:
+    """The rotations by the vectors (x, y, z) of all elements (n,), entry by entry: 1 + c₁ [u] + c₂ [u]²."""
+    c1, c2, *_ = stumpff(x * x + y * y + z * z)
+    return [
+        1.0 - c2 * (y * y + z * z), c2 * x * y - c1 * z, c2 * x * z + c1 * y,
+        c2 * x * y + c1 * z, 1.0 - c2 * (x * x + z * z), c2 * y * z - c1 * x,
+        c2 * x * z - c1 * y, c2 * y * z + c1 * x, 1.0 - c2 * (x * x + y * y),
+    ]  # fmt: skip

@@ -7,8 +7,9 @@ from pathlib import Path
 import numpy as np
 
 from flexsurr.aerodynamics.features import ALPHA, BETA, COEFFICIENTS, FEATURES, MACH
-from flexsurr.beam import reduce, tip_position, tip_twist
+from flexsurr.beam import ModalBasis, reduce, tip_position, tip_twist
 from flexsurr.config.aircraft import load_aircraft
+from flexsurr.config.along_span import AlongSpan
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Reduction
 from flexsurr.export import ExportedModel, Quantity, exported_aircraft, exported_map, exported_surrogate
@@ -59,6 +60,12 @@ WING = Structure(
     torsional_inertia_per_length_kg_m=1e-3,
     centre_of_gravity_offset_m=0.02,
 )
+WINGS = {
+    "wing_in_sequence": WING.model_copy(update={"joint_rotation": "sequence"}),
+    "wing_bent": WING.model_copy(
+        update={"along_span": AlongSpan(s_m=(0.0, 2.0), axis_psi_deg=(20.0, 50.0), axis_phi_deg=(0.0, 9.0))}
+    ),
+}
 
 
 @dataclass(frozen=True)
@@ -87,7 +94,7 @@ def of_surrogate(name, surrogate, basis=None) -> Case:
     outputs = []
     if basis is not None:
         joints = x[:, : d // 2] @ basis.modes.T
-        outputs += [tip_position(WING, joints), tip_twist(WING, joints)[:, None]]
+        outputs += [tip_position(basis.structure, joints), tip_twist(basis.structure, joints)[:, None]]
     if any(quantity.name.startswith("energy") for quantity in model.outputs):
         outputs.append(surrogate.energy(x)[:, None])
     return Case(model, x, u, rates, np.hstack(outputs) if outputs else np.empty((SAMPLES, 0)))
@@ -176,7 +183,7 @@ def _of_features() -> HNN:
 
 def cases() -> dict[str, Case]:
     """Every kind of surrogate and map, by name."""
-    basis = reduce(WING, Reduction(modes=3, normalisation="mass"))
+    basis = _of(WING)
     of_basis = {
         "wing": port_polynomial(6, 4, even=True),
         "wing_mlp": network(MLP, 6, (8,), "tanh"),
@@ -199,12 +206,20 @@ def cases() -> dict[str, Case]:
     torch.manual_seed(0)
     found = {
         **{name: of_surrogate(name, surrogate, basis) for name, surrogate in of_basis.items()},
+        **{
+            name: of_surrogate(name, network(MLP, 6, (8,), "tanh"), _of(wing)) for name, wing in WINGS.items()
+        },
         **{name: of_surrogate(name, surrogate) for name, surrogate in surrogates.items()},
         **{name: of_map(name, learned) for name, learned in maps().items()},
         "aircraft": of_aircraft("aircraft", _aerodynamics()),
         **{name: of_module(name, module, module_states(module)) for name, module in modules.items()},
     }
     return {case.model.name: case for case in found.values()}
+
+
+def _of(structure: Structure) -> ModalBasis:
+    """Three modes of a structure."""
+    return reduce(structure, Reduction(modes=3, normalisation="mass"))
 
 
 def module_states(module: nn.Module) -> int:
