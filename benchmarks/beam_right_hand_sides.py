@@ -13,7 +13,8 @@ from numba import njit
 from timing import Timing, measure
 
 from flexsurr.beam import full_order, loaded, reduce, reduced_order
-from flexsurr.config.load import Sine, TipForce
+from flexsurr.config.history import Sine
+from flexsurr.config.load import TipForce
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Reduction
 from flexsurr.simulation import rhs

@@ -14,7 +14,8 @@ from timing import compare
 from wing import ACCURATE, FRESH, basis, datasets, starts, wing_model
 
 from flexsurr.beam import loaded
-from flexsurr.config.load import DistributedForce, Power, Spread
+from flexsurr.config.history import Power
+from flexsurr.config.load import DistributedForce, Spread
 from flexsurr.config.study import EvaluationSettings, Integrator, LearnedLoadSettings
 from flexsurr.config.trial import trial_of
 from flexsurr.evaluation.learned_loads import exact_forces, learn_forces, relative_error
@@ -151,7 +152,7 @@ def learned_loads(dataset, model) -> None:
         exact = exact_forces(basis(), learned.load, held_out)
         for fitted in (learned.polynomial, learned.network):
             errors[fitted.form] = relative_error(fitted(held_out), exact)
-            models[fitted.form] = LearnedLoad(model, fitted, load.history)
+            models[fitted.form] = LearnedLoad(model, fitted, (load.history,))
     found = best_gradient(eta, exact_forces(basis(), learned.load, eta), 8)
     print(f"\nthe best potential of degree 8 errs by {found:.1e}: dead forces have one")
     calls = nanoseconds(models, dataset.x_train[5])

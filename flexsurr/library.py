@@ -18,7 +18,7 @@ import pandas as pd
 from pydantic import TypeAdapter
 
 from flexsurr.beam import find_equilibrium, loaded
-from flexsurr.config.load import Load, check_load
+from flexsurr.config.load import Load
 from flexsurr.config.study import Integrator
 from flexsurr.simulation import Trajectory, simulate
 from flexsurr.simulation.rhs import Array, Model
@@ -138,7 +138,8 @@ class LoadedSurrogate:
 
         initial: every state, or some by their names and the others as at rest; by default at rest.
         load: one of `flexsurr.config.load`, or its keys as in config/studies, such as {"kind": "tip_force",
-        "force_N": 10.0, "history": {"kind": "sine", "frequency_rad_s": 50.0}}.
+        "force_N": 10.0, "history": {"kind": "sine", "frequency_rad_s": 50.0}}. A history's file lies where
+        its path leads from the current folder.
 
         Warns with `OutOfRange` where a state leaves the training range, once. A simulation that fails ends
         its response: see `trajectory.completed` and `trajectory.reason`. Raises ValueError for a state
@@ -164,8 +165,8 @@ class LoadedSurrogate:
         if self.saved.basis is None:
             raise ValueError(f"load: {self.saved.run_id} stands for no structure that could feel one")
         checked: Load = TypeAdapter(Load).validate_python(load)
-        check_load(checked, self.saved.basis.structure)
-        return loaded(self._model, self.saved.basis, checked, "compiled")
+        checked.check(self.saved.basis.structure)
+        return loaded(self._model, self.saved.basis, checked.with_tables(Path()), "compiled")
 
     def _state(self, initial: Mapping[str, float] | Sequence[float] | Array | None) -> Array:
         d = len(self.state_names)

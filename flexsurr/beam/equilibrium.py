@@ -3,16 +3,20 @@
 Gravity and load grow together by a factor λ from 0 to 1. As long as the tangent stiffness Φᵀ (K − λ ∂Q/∂q) Φ
 is positive definite, the equilibrium is stable and η moves on with λ at the rate that solves
 (tangent) dη/dλ = Φᵀ Q. Where it is not, the structure buckles. Full order is the case Φ = 1.
+
+A load without a potential has a tangent that is not symmetric. Its path is followed as long as the tangent's
+determinant stays positive; that the equilibrium is stable is not shown.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
 from flexsurr.beam.chain import chain, check_coordinates
-from flexsurr.beam.kinematics import configuration, generalised_forces
-from flexsurr.beam.loads import Forces, Load, static_forces
+from flexsurr.beam.kinematics import configuration
+from flexsurr.beam.loads import Acting, Load, has_potential, static_load
 from flexsurr.beam.projection import ModalBasis, Projection, projection
 from flexsurr.config.structure import JOINTS, Structure
 from flexsurr.simulation.rhs import Array
@@ -37,10 +41,11 @@ def find_equilibrium(
     """The η (r,) with Φᵀ (K q − Q(q)) = 0 under gravity and `load`, eq. 8; q for a structure.
 
     Of all equilibria it is the one to which the undeformed shape leads as gravity and load grow together.
+    Under a load without a potential, such as one that follows, it need not be stable.
     A load that changes with time is held as it is at `at_s` [s]. Raises EquilibriumNotFound where the path
     becomes unstable, and ValueError for a load that changes with time where no instant is given.
     """
-    balance = _Balance(projection(system), static_forces(_structure(system), load, at_s))
+    balance = _Balance(projection(system), static_load(_structure(system), load, at_s))
     eta, reached, step = np.zeros(balance.space.coordinates), 0.0, 1.0
     while reached < 1.0:
         forces, gradient = balance.forces(eta)
@@ -56,14 +61,14 @@ def find_equilibrium(
 
 def static_residual(structure: Structure, q: Array, load: Load | None = None) -> Array:
     """K q − Q(q) (..., n) at q (..., n), with gravity and `load`."""
-    balance = _Balance(projection(structure), static_forces(structure, load))
+    balance = _Balance(projection(structure), static_load(structure, load))
     return q @ balance.space.stiffness - balance.generalised(q)
 
 
 def tangent_stiffness(structure: Structure, q: Array, load: Load | None = None) -> Array:
-    """(n, n) K − ∂Q/∂q at q (n,): springs and geometric stiffness."""
+    """(n, n) K − ∂Q/∂q at q (n,): springs and geometric stiffness; symmetric if the load has a potential."""
     check_coordinates(structure, q)
-    balance = _Balance(projection(structure), static_forces(structure, load))
+    balance = _Balance(projection(structure), static_load(structure, load))
     return balance.space.stiffness - balance.forces(q)[1]
 
 
@@ -72,23 +77,36 @@ class _Balance:
     """Springs against gravity and a constant load."""
 
     space: Projection
-    load: Forces
+    load: Acting
+
+    @cached_property
+    def conservative(self) -> bool:
+        """Whether the load has a potential, as gravity has."""
+        return has_potential(self.space.structure, self.load)
 
     def generalised(self, eta: Array) -> Array:
         """Φᵀ Q (..., r) at η (..., r)."""
         beam = chain(self.space.structure)
         weights = beam.masses[:, None] * beam.gravity
         at = configuration(beam, eta @ self.space.modes.T)
-        return (
-            generalised_forces(beam, at, weights, self.load.on_centres, self.load.on_tip) @ self.space.modes
-        )
+        return self.load.generalised(beam, at, weights) @ self.space.modes
 
     def forces(self, eta: Array) -> tuple[Array, Array]:
         """Φᵀ Q (r,) and Φᵀ ∂Q/∂q Φ (r, r) at η (r,): all columns by complex steps at once."""
         found = self.generalised(eta + 1j * _COMPLEX_STEP * np.eye(len(eta)))
         gradient = found.imag / _COMPLEX_STEP
+        if not self.conservative:
+            return found[0].real, gradient.T
         # Forces that have a potential give a symmetric tangent; averaging removes the rounding.
         return found[0].real, 0.5 * (gradient + gradient.T)
+
+    def solved(self, tangent: Array, residual: Array) -> Array:
+        """(r,) what the tangent (r, r) takes to the residual (r,); LinAlgError past a point of no return."""
+        if self.conservative:
+            return np.asarray(cho_solve(cho_factor(tangent), residual))
+        if np.linalg.slogdet(tangent)[0] <= 0.0:
+            raise LinAlgError
+        return np.asarray(np.linalg.solve(tangent, residual))
 
     def turn(self, change: Array) -> float:
         """By how much a change of η (r,) turns the joints, all together [rad]."""
@@ -107,7 +125,7 @@ class _Balance:
             forces, gradient = self.forces(found)
             residual = springs @ found - factor * forces
             try:
-                correction = cho_solve(cho_factor(springs - factor * gradient), residual)
+                correction = self.solved(springs - factor * gradient, residual)
             except LinAlgError:
                 return None
             scale = float(np.linalg.norm(springs @ found)) + applied
@@ -122,11 +140,13 @@ class _Balance:
     def _size(self) -> float:
         """A bound of Φᵀ Q: gravity and load as a moment over the length [N m], through the modes."""
         beam = chain(self.space.structure)
-        weight = beam.masses.sum() * np.linalg.norm(beam.gravity)
-        forces = (
-            weight + np.linalg.norm(self.load.on_centres, axis=1).sum() + np.linalg.norm(self.load.on_tip)
-        )
-        return float(forces * self.space.structure.length_m * np.linalg.norm(self.space.modes, 2))
+        forces = beam.masses.sum() * np.linalg.norm(beam.gravity)
+        couples = 0.0
+        for load in self.load:
+            forces += sum(np.linalg.norm(part) for part in (*load.on_centres, load.on_tip, *load.on_masses))
+            couples += sum(np.linalg.norm(couple) for couple in load.couples)
+        moments = forces * self.space.structure.length_m + couples
+        return float(moments * np.linalg.norm(self.space.modes, 2))
 
 
 def _energy(springs: Array, change: Array) -> float:
@@ -138,15 +158,18 @@ def _structure(system: Structure | ModalBasis) -> Structure:
     return system.structure if isinstance(system, ModalBasis) else system
 
 
-def _buckling(system: Structure | ModalBasis, load: Load | None, forces: Forces, factor: float) -> str:
+def _buckling(system: Structure | ModalBasis, load: Load | None, acts: Acting, factor: float) -> str:
     structure = _structure(system)
     name = structure.name
     if isinstance(system, ModalBasis):
         name += f" in {system.modes.shape[1]} mode(s)"
     causes = []
     if load is not None:
-        total = np.linalg.norm(forces.on_centres.sum(axis=0) + forces.on_tip)
-        causes.append(f"at {factor * total:.4g} N ({load.kind.replace('_', ' ')})")
+        forces = acts.dead.plus(acts.following)
+        total = np.linalg.norm((forces.on_centres + forces.on_masses).sum(axis=0) + forces.on_tip)
+        couple = np.linalg.norm(forces.couples.sum(axis=0))
+        size = f"{factor * total:.4g} N" if total > 0.0 else f"{factor * couple:.4g} N m"
+        causes.append(f"at {size} ({load.kind.replace('_', ' ')})")
     if structure.gravity_m_s2 > 0.0:
         causes.append(f"under {100.0 * factor:.3g} % of its own weight")
     return f"{name}: buckles {' '.join(causes)}"

@@ -1,33 +1,36 @@
-"""Models under a load: the right-hand side of any model in the beam's coordinates plus Q = Φᵀ Jᵀ F(t).
+"""Models under a load: the right-hand side of any model in the beam's coordinates plus Q = Φᵀ Jᵀ F(t, q).
 
 With a surrogate as the model this is the paper's augmented surrogate (its Fig. 11).
 """
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
 from flexsurr.beam.chain import chain
 from flexsurr.beam.compiled import all_joints, own, padded, rigid_elements
 from flexsurr.beam.described import jacobians
-from flexsurr.beam.kinematics import configuration, generalised_forces, tip_position, tip_twist
+from flexsurr.beam.kinematics import configuration, element_frames, tip_position, tip_twist
 from flexsurr.beam.load_sweeps import (
     PlanarLoaded,
     SpatialLoaded,
     planar_load_work_size,
     spatial_load_work_size,
 )
-from flexsurr.beam.loads import Forces, Load, load_forces
+from flexsurr.beam.loads import Acting, Forces, Load, Part, acting, load_breakpoints, load_parts, turned
 from flexsurr.beam.models import Implementation, check_implementation
-from flexsurr.beam.planar import is_planar, plane
+from flexsurr.beam.planar import Plane, is_planar, plane
 from flexsurr.beam.projection import ModalBasis, Projection, projection
 from flexsurr.beam.rigid_load_sweep import RigidLoaded, rigid_load_work_size
 from flexsurr.config.structure import Structure
-from flexsurr.simulation.history import breakpoints, factor, history_kernel
+from flexsurr.simulation.history import factor, histories_kernel
 from flexsurr.simulation.rhs import Array, CompiledModel, Model, evaluate
+
+_STEP = 1e-30
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +56,7 @@ class LoadedModel(ABC):
     @property
     def breakpoints(self) -> tuple[float, ...]:
         """Times [s] at which the load, or the model itself, may jump."""
-        return tuple(sorted({*self.model.breakpoints, *breakpoints(self.load.history)}))
+        return tuple(sorted({*self.model.breakpoints, *load_breakpoints(self.load)}))
 
     @property
     def energy(self) -> Any:
@@ -69,9 +72,9 @@ class LoadedModel(ABC):
         return tip_twist(self.projection.structure, self.projection.joints(x))
 
     @cached_property
-    def forces(self) -> Forces:
-        """What the load exerts at a factor of 1."""
-        return load_forces(self.projection.structure, self.load)
+    def parts(self) -> tuple[Part, ...]:
+        """What the load exerts, one part for each history."""
+        return load_parts(self.projection.structure, self.load)
 
     @abstractmethod
     def derivative(self, t: float, x: Array) -> Array:
@@ -83,94 +86,130 @@ class InterpretedLoad(LoadedModel):
 
     def derivative(self, t: float, x: Array) -> Array:
         """ẋ (2r,) at time t [s] and states x (2r,)."""
-        now = factor(self.load.history, t)
+        factors = [factor(part.history, t) for part in self.parts]
         dx = np.array(self.model.derivative(t, x))
-        if now != 0.0:
+        if any(factors):
             r = self.projection.coordinates
-            dx[r:] += now * self.generalised_force(x[:r])
+            now = acting(self.projection.structure.elements, self.parts, factors)
+            dx[r:] += self.generalised_force(x[:r], now)
         return dx
 
     @abstractmethod
-    def generalised_force(self, eta: Array) -> Array:
-        """Φᵀ Jᵀ F (r,) at η (r,), at a factor of 1."""
+    def generalised_force(self, eta: Array, now: Acting) -> Array:
+        """Φᵀ Jᵀ F (r,) at η (r,) of what acts now."""
 
 
 class DescribedLoad(InterpretedLoad):
     """Q from the Jacobian by complex steps, joint by joint."""
 
-    def generalised_force(self, eta: Array) -> Array:
-        """Φᵀ Jᵀ F (r,) at η (r,)."""
-        on_centres, on_tip = self.forces
+    def generalised_force(self, eta: Array, now: Acting) -> Array:
+        """Φᵀ Jᵀ F (r,) at η (r,) of what acts now."""
         modes, structure = self.projection.modes, self.projection.structure
-        jacobian = jacobians(structure, modes @ eta)
-        forces = jacobian.tip.T @ on_tip
-        for columns, force in zip(jacobian.centres, on_centres, strict=True):
+        q = modes @ eta
+        acts = now.dead
+        if any(part.any() for part in now.following):
+            acts = acts.plus(turned(now.following, element_frames(structure, q)))
+        jacobian = jacobians(structure, q)
+        forces = jacobian.tip.T @ acts.on_tip
+        for columns, force in zip(jacobian.centres, acts.on_centres, strict=True):
             forces = forces + columns.T @ force
-        return modes.T @ forces
+        if acts.on_masses.any():
+            for columns, force in zip(jacobian.masses, acts.on_masses, strict=True):
+                forces = forces + columns.T @ force
+        if acts.couples.any():
+            for columns, couple in zip(_turning(structure, q), acts.couples, strict=True):
+                forces = forces + columns.T @ couple
+        return np.asarray(modes.T @ forces)
+
+
+def _turning(structure: Structure, q: Array) -> Array:
+    """(N, 3, n) angular velocity of each element for each joint rate at q (n,), by complex steps.
+
+    With R turning at ω, Ṙ Rᵀ is the matrix of ω ×.
+    """
+    frames, columns = element_frames(structure, q), np.empty((structure.elements, 3, len(q)))
+    for k in range(len(q)):
+        step = np.zeros(len(q), dtype=complex)
+        step[k] = 1j * _STEP
+        spins = (element_frames(structure, q + step).imag / _STEP) @ np.swapaxes(frames, -1, -2)
+        columns[:, :, k] = np.stack([spins[:, 2, 1], spins[:, 0, 2], spins[:, 1, 0]], axis=-1)
+    return columns
 
 
 class VectorisedLoad(InterpretedLoad):
     """Q from moments about the joints."""
 
-    @cached_property
-    def _nothing(self) -> Array:
-        return np.zeros((self.projection.structure.elements, 3))
-
-    def generalised_force(self, eta: Array) -> Array:
-        """Φᵀ Jᵀ F (r,) at η (r,)."""
+    def generalised_force(self, eta: Array, now: Acting) -> Array:
+        """Φᵀ Jᵀ F (r,) at η (r,) of what acts now."""
         beam, modes = chain(self.projection.structure), self.projection.modes
-        at = configuration(beam, modes @ eta)
-        return modes.T @ generalised_forces(beam, at, self._nothing, *self.forces)
+        return np.asarray(modes.T @ now.generalised(beam, configuration(beam, modes @ eta)))
 
 
 class VectorisedPlanarLoad(InterpretedLoad):
-    """Q of a chain in a plane, from constant moment arms."""
+    """Q of a chain in a plane under dead forces and any couples, from constant moment arms."""
 
     @cached_property
-    def _arms(self) -> tuple[Array, Array]:
-        frame = plane(self.projection)
-        return frame.slopes, frame.moment_arms(self.forces.on_centres, self.forces.on_tip)
+    def _frame(self) -> Plane:
+        return plane(self.projection)
 
-    def generalised_force(self, eta: Array) -> Array:
-        """Φᵀ Jᵀ F (r,) at η (r,)."""
-        slopes, arms = self._arms
-        angles = slopes @ eta
-        force: Array = (arms[1] * np.cos(angles) - arms[0] * np.sin(angles)) @ slopes
+    def generalised_force(self, eta: Array, now: Acting) -> Array:
+        """Φᵀ Jᵀ F (r,) at η (r,) of what acts now."""
+        arms = planar_arms(self._frame, now)
+        angles = self._frame.slopes @ eta
+        force: Array = (arms[1] * np.cos(angles) - arms[0] * np.sin(angles) + arms[2]) @ self._frame.slopes
         return force
 
 
+def planar_arms(frame: Plane, now: Acting) -> Array:
+    """(3, N) moment arms of the dead forces on a chain in a plane, and the couples about its normal [N m]."""
+    forces, couples = now.dead, now.dead.couples @ np.cross(*frame.axes)
+    couples = couples + now.following.couples @ frame.own_normal
+    arms = frame.moment_arms(forces.on_centres, forces.on_tip)
+    arms += frame.axes @ forces.on_masses.T @ frame.levers
+    return np.vstack([arms, couples])
+
+
 class CompiledLoad(LoadedModel):
-    """Model and load in one kernel."""
+    """Model and load in one kernel, the cheapest that fits the chain and the load."""
+
+    @cached_property
+    def _sweep(self) -> Literal["planar", "spatial", "rigid"]:
+        structure, parts = self.projection.structure, self.parts
+        if stays_planar(structure, parts):
+            return "planar"
+        return "spatial" if chain(structure).uniform and only_dead_forces(parts) else "rigid"
 
     @cached_property
     def kernel(self) -> NamedTuple:
         """The model's kernel within the load's."""
-        history = history_kernel(self.load.history)
-        if is_planar(self.projection.structure):
-            frame = plane(self.projection)
-            arms = frame.moment_arms(self.forces.on_centres, self.forces.on_tip)
-            return PlanarLoaded(self.model.kernel, padded(frame.slopes.T), padded(arms), history)
+        histories = histories_kernel([part.history for part in self.parts])
         beam = chain(self.projection.structure)
-        modes, load = all_joints(self.projection), self.forces
-        if not beam.uniform:
-            return RigidLoaded(
-                self.model.kernel, modes, rigid_elements(beam), np.zeros((beam.elements, 3)),
-                own(load.on_centres), own(load.on_tip), history,
+        if self._sweep == "planar":
+            frame = plane(self.projection)
+            arms = [planar_arms(frame, acting(beam.elements, [part], [1.0])) for part in self.parts]
+            return PlanarLoaded(self.model.kernel, padded(frame.slopes.T), padded(np.array(arms)), histories)
+        modes = all_joints(self.projection)
+        forces = Forces(
+            *(own(np.array(each)) for each in zip(*(part.forces for part in self.parts), strict=True))
+        )
+        if self._sweep == "spatial":
+            return SpatialLoaded(
+                self.model.kernel, modes, own(beam.clamp), beam.element_length, np.zeros(3),
+                forces.on_centres, forces.on_tip, histories,
             )  # fmt: skip
-        return SpatialLoaded(
-            self.model.kernel, modes, own(beam.clamp), beam.element_length, np.zeros(3),
-            own(load.on_centres), own(load.on_tip), history,
-        )  # fmt: skip
+        follows = np.array([part.follows for part in self.parts])
+        return RigidLoaded(self.model.kernel, modes, rigid_elements(beam), *forces, follows, histories)
 
     @property
     def work_size(self) -> int:
         """Model and load use the same scratch, one after the other."""
-        structure = self.projection.structure
-        if is_planar(structure):
-            load = planar_load_work_size
-        else:
-            load = spatial_load_work_size if chain(structure).uniform else rigid_load_work_size
-        return int(max(self.model.work_size, load(structure.elements)))
+        sizes = {
+            "planar": planar_load_work_size,
+            "spatial": spatial_load_work_size,
+            "rigid": rigid_load_work_size,
+        }
+        load = sizes[self._sweep](self.projection.structure.elements)
+        return int(max(self.model.work_size, load))
 
     def derivative(self, t: float, x: Array) -> Array:
         """ẋ (2r,) at time t [s] and states x (2r,)."""
@@ -201,5 +240,15 @@ def loaded(
         if not isinstance(model, CompiledModel):
             raise TypeError(f"a compiled load needs a compiled model; {type(model).__name__} has no kernel")
         return CompiledLoad(model, space, load)
-    planar = is_planar(space.structure)
+    planar = stays_planar(space.structure, load_parts(space.structure, load))
     return VectorisedPlanarLoad(model, space, load) if planar else VectorisedLoad(model, space, load)
+
+
+def only_dead_forces(parts: Sequence[Part]) -> bool:
+    """Whether nothing but dead forces on the elastic axis acts."""
+    return not any(part.follows or part.forces.on_masses.any() or part.forces.couples.any() for part in parts)
+
+
+def stays_planar(structure: Structure, parts: Sequence[Part]) -> bool:
+    """Whether the chain stays in a plane, and constant moment arms tell what the load exerts."""
+    return is_planar(structure) and all(not part.follows or part.forces.only_couples for part in parts)

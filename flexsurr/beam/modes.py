@@ -6,7 +6,7 @@ from scipy.linalg import eigh
 from flexsurr.beam.chain import chain, check_coordinates
 from flexsurr.beam.equilibrium import EquilibriumNotFound, find_equilibrium, tangent_stiffness
 from flexsurr.beam.kinematics import configuration, generalised_forces, mass_matrix
-from flexsurr.beam.loads import Load
+from flexsurr.beam.loads import Load, has_potential, static_load
 from flexsurr.beam.projection import ModalBasis
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Reduction
@@ -18,9 +18,14 @@ def natural_modes(structure: Structure, equilibrium: Array, load: Load | None = 
 
     The stiffness is the tangent one about `equilibrium` (n,): springs less the change of the generalised
     forces of gravity and `load` with q. Each mode's sign lifts the tip; where the tip does not move in
-    z, the mode's largest component is positive. EquilibriumNotFound where the equilibrium is unstable.
+    z, the mode's largest component is positive. EquilibriumNotFound where the equilibrium is unstable;
+    ValueError under a load without a potential, whose motion has no such modes.
     """
     q = check_coordinates(structure, equilibrium, "equilibrium")
+    if not has_potential(structure, static_load(structure, load)):
+        raise ValueError(
+            f"{structure.name}: under a load that follows, or a moment in space, there are no real modes"
+        )
     squares, modes = eigh(tangent_stiffness(structure, q, load), mass_matrix(structure, q))
     if squares[0] < 0.0:
         raise EquilibriumNotFound(

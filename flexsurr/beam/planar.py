@@ -28,6 +28,7 @@ class Plane:
     masses: Array  # (N,) [kg]
     rotary_inertia: Array  # (r, r) [kg m²]
     weights: Array  # (2, N) of gravity: see `moment_arms` [N m]
+    own_normal: Array  # (3,) the axis about which the angles turn, in any element's own axes
 
     def moment_arms(self, on_centres: Array, on_tip: Array) -> Array:
         """(2, N) f: dead forces (N, 3), (3,) [N] turn element j by −sin θ_j f_0j + cos θ_j f_1j [N m]."""
@@ -63,6 +64,7 @@ def plane(projection: Projection) -> Plane:
         masses=beam.masses,
         rotary_inertia=slopes.T @ (inertia[:, None] * slopes),
         weights=axes @ (beam.masses * beam.gravity[:, None]) @ levers,
+        own_normal=np.array([0.0, -1.0, 0.0]) if normal == 2 else np.array([0.0, 0.0, 1.0]),
     )
 
 

@@ -1,69 +1,28 @@
-"""Loads on the beam as data: where a force acts, and when (`evaluation.load` in config/studies/*.yaml).
+"""Loads on the beam as data: what acts where, and when (`evaluation.load` in config/studies/*.yaml).
 
-A load of fixed shape follows one history: F(t) = factor(t) f. All forces are dead: they keep their direction,
-which is given in the clamp's frame before the clamp is turned.
+A load of fixed shape follows one history: F(t) = factor(t) f. A dead load keeps its direction, which is
+given in the clamp's frame before the clamp is turned: x along the undeformed span, y left, z up. A load that
+`follows` turns with the element on which it acts, and its direction is given in that element's own axes.
 """
 
+from collections.abc import Iterable, Sequence
+from pathlib import Path
 from typing import Annotated, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
+from flexsurr.config.history import Constant, History, with_table
 from flexsurr.config.schema import Record, by_kind
-from flexsurr.config.structure import NotNegative, Positive, Structure
+from flexsurr.config.structure import Joint, NotNegative, Positive, Structure
 
 Vector = tuple[float, float, float]
+"""Along x, y and z."""
 AXES: tuple[Vector, Vector, Vector] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
+TURNS_ABOUT: dict[Joint, int] = {"torsion": 0, "out_of_plane": 1, "in_plane": 2}
+"""The axis, of x, y and z, about which a joint turns."""
 
-class Interval(Record):
-    """A load acts for start_s ≤ t < end_s."""
-
-    start_s: NotNegative = 0.0
-    """When the load begins to act [s]."""
-    end_s: Positive | None = None
-    """When it ends [s], after its start. None: it does not end by itself."""
-
-    @model_validator(mode="after")
-    def _ends_after_its_start(self) -> Self:
-        if self.end_s is not None and not self.start_s < self.end_s:
-            raise ValueError(f"a load must end after its start: start {self.start_s} s, end {self.end_s} s")
-        return self
-
-
-class Constant(Interval):
-    """A factor of 1."""
-
-    kind: Literal["constant"] = "constant"
-    """Held as it is."""
-
-
-class Sine(Interval):
-    """The factor sin(ω t + phase)."""
-
-    kind: Literal["sine"] = "sine"
-    """Swinging."""
-    frequency_rad_s: Positive
-    """ω, the angular frequency [rad/s]."""
-    phase_rad: float = 0.0
-    """The phase at t = 0 [rad]."""
-
-
-class Power(Interval):
-    """A power of the time as factor: (t / reference_s)^exponent."""
-
-    kind: Literal["power"] = "power"
-    """Growing from t = 0."""
-    exponent: Annotated[int, Field(ge=1)]
-    """Power of (t / reference_s)."""
-    reference_s: Positive = 1.0
-    """The time at which the factor is 1 [s]."""
-
-
-# Another history is one more record here, and its factor in flexsurr.simulation.history.
-History = Annotated[
-    Annotated[Constant, Tag("constant")] | Annotated[Sine, Tag("sine")] | Annotated[Power, Tag("power")],
-    Discriminator(by_kind),
-]
+_ROUNDING = 1e-12
 
 
 class _Load(Record):
@@ -72,14 +31,55 @@ class _Load(Record):
     history: History = Constant()
     """The factor that it follows in time. None given: held as it is."""
 
+    @property
+    def parts(self) -> tuple["Single", ...]:
+        """The loads of one history each that it is made of: itself."""
+        return (self,)  # type: ignore[return-value]
+
+    @property
+    def start_s(self) -> float:
+        """When it begins to act [s]."""
+        return self.history.start_s
+
     def until(self, end_s: float) -> Self:
         """The same load that ends at `end_s` [s], if it does not end before."""
         own = self.history.end_s
         ends = {"end_s": end_s if own is None else min(own, end_s)}
         return self.model_copy(update={"history": self.history.model_copy(update=ends)})
 
+    def with_tables(self, root: Path) -> Self:
+        """The same load with the numbers of the file of its history, if any; ValueError as `with_table`."""
+        return self.model_copy(update={"history": with_table(self.history, root)})
 
-class TipForce(_Load):
+    def check(self, structure: Structure) -> None:
+        """ValueError for a load that the structure cannot feel, or outside its span."""
+        if not self._felt(structure):
+            joints = ", ".join(structure.ordered_joints)
+            raise ValueError(f"no joint feels it; allowed: a load that can do work on the joints ({joints})")
+
+    def _felt(self, structure: Structure) -> bool:
+        raise NotImplementedError
+
+
+class _Directed(_Load):
+    """What every load along one direction has; the field stands with its meaning in each."""
+
+    @model_validator(mode="after")
+    def _has_a_direction(self) -> Self:
+        direction: Vector = self.direction  # type: ignore[attr-defined]
+        if not any(direction):
+            raise ValueError(f"direction: {list(direction)} is the zero vector; allowed: any other")
+        return self
+
+
+class _AtTheTip(_Directed):
+    """What every load at the tip has."""
+
+    follows: bool = False
+    """Whether it turns with the last element. false: it is dead."""
+
+
+class TipForce(_AtTheTip):
     """A force at the tip."""
 
     kind: Literal["tip_force"] = "tip_force"
@@ -87,20 +87,28 @@ class TipForce(_Load):
     force_N: float
     """Its size [N], positive along `direction`."""
     direction: Vector = AXES[2]
-    """Of any length but 0, in the clamp's frame before it is turned: x along the span, y left, z up. By
-    default up.
+    """Of any length but 0, in the clamp's frame before it is turned: x along the span, y left, z up. If it
+    `follows`, in the last element's own axes. By default up.
     """
 
-    @model_validator(mode="after")
-    def _has_a_direction(self) -> Self:
-        if not any(self.direction):
-            raise ValueError(f"direction: {list(self.direction)} is the zero vector; allowed: any other")
-        return self
+    def _felt(self, structure: Structure) -> bool:
+        return bool(self.force_N) and _is_felt(structure, [self.direction], self.follows)
 
-    @property
-    def directions(self) -> tuple[Vector, ...]:
-        """Along which it pushes."""
-        return (self.direction,) if self.force_N else ()
+
+class TipMoment(_AtTheTip):
+    """A moment at the tip."""
+
+    kind: Literal["tip_moment"] = "tip_moment"
+    """All of it on the last element."""
+    moment_N_m: float
+    """Its size [N m], positive about `direction` by the right hand."""
+    direction: Vector = (0.0, -1.0, 0.0)
+    """The axis about which it turns, of any length but 0, in the frame of a force's. By default −y: it lifts
+    the tip.
+    """
+
+    def _felt(self, structure: Structure) -> bool:
+        return bool(self.moment_N_m) and _turns(structure, [self.direction], self.follows)
 
 
 Shape = Literal["uniform", "linear", "elliptic", "one_minus_elliptic"]
@@ -114,8 +122,43 @@ class Spread(Record):
     shape: Shape = "uniform"
     """How it varies along ξ = x / L: 1; ξ; √(1 − ξ²), as lift in eq. 14; 1 − √(1 − ξ²), as drag in eq. 13."""
 
+    @property
+    def size(self) -> float:
+        """Where the shape is 1 [N/m]."""
+        return self.force_N_m
 
-class DistributedForce(_Load):
+
+class MomentSpread(Record):
+    """A moment per length along the span: its size times a shape of ξ = x/L."""
+
+    moment_N_m_m: float
+    """Moment per span [N m/m] where the shape is 1; positive about the axis by the right hand."""
+    shape: Shape = "uniform"
+    """How it varies along ξ = x / L, as that of a force."""
+
+    @property
+    def size(self) -> float:
+        """Where the shape is 1 [N m/m]."""
+        return self.moment_N_m_m
+
+
+class _AlongTheSpan(_Load):
+    """What every distributed load has."""
+
+    from_m: NotNegative = 0.0
+    """Where it begins, from the clamp [m]."""
+    to_m: Positive | None = None
+    """Where it ends, from the clamp, within the span [m]. None: at the tip."""
+    follows: bool = False
+    """Whether it turns with each element; the axes are then the element's own. false: it is dead."""
+
+    def check(self, structure: Structure) -> None:
+        """ValueError for a load that the structure cannot feel, or outside its span."""
+        loaded_span(self, structure.length_m)
+        super().check(structure)
+
+
+class DistributedForce(_AlongTheSpan):
     """Forces per length along the axes, each of its own shape."""
 
     kind: Literal["distributed"] = "distributed"
@@ -126,10 +169,6 @@ class DistributedForce(_Load):
     """What acts along y, to the left."""
     along_z: Spread | None = None
     """What acts along z, upwards."""
-    from_m: NotNegative = 0.0
-    """Where it begins, from the clamp [m]."""
-    to_m: Positive | None = None
-    """Where it ends, from the clamp, within the span [m]. None: at the tip."""
     acts_on: Literal["span", "tip"] = "span"
     """span gives each element the integral over its own span, at its centre on the elastic axis; tip gives
     all of it to the tip.
@@ -146,20 +185,109 @@ class DistributedForce(_Load):
         """Along x, y and z."""
         return self.along_x, self.along_y, self.along_z
 
+    def _felt(self, structure: Structure) -> bool:
+        return _is_felt(structure, _axes_of(self.spreads), self.follows)
+
+
+class DistributedMoment(_AlongTheSpan):
+    """Moments per length about the axes, each of its own shape."""
+
+    kind: Literal["distributed_moment"] = "distributed_moment"
+    """Along the span, on each element what acts within its own."""
+    about_x: MomentSpread | None = None
+    """What turns about x, the span. At least one of the three is given."""
+    about_y: MomentSpread | None = None
+    """What turns about y: where it is negative it lifts the tip."""
+    about_z: MomentSpread | None = None
+    """What turns about z, to the left."""
+
+    @model_validator(mode="after")
+    def _acts_about_an_axis(self) -> Self:
+        if not any(self.spreads):
+            raise ValueError("about_x, about_y, about_z: none is given; allowed: at least one")
+        return self
+
     @property
-    def directions(self) -> tuple[Vector, ...]:
-        """Along which it pushes."""
-        spreads = zip(AXES, self.spreads, strict=True)
-        return tuple(axis for axis, spread in spreads if spread is not None and spread.force_N_m)
+    def spreads(self) -> tuple[MomentSpread | None, ...]:
+        """About x, y and z."""
+        return self.about_x, self.about_y, self.about_z
+
+    def _felt(self, structure: Structure) -> bool:
+        return _turns(structure, _axes_of(self.spreads), self.follows)
 
 
-Load = Annotated[
-    Annotated[TipForce, Tag("tip_force")] | Annotated[DistributedForce, Tag("distributed")],
-    Discriminator(by_kind),
-]
+class ClampAcceleration(_Directed):
+    """The clamp is moved without turning: a = factor(t) times this acceleration.
+
+    Seen from the clamp each mass feels −m a. Positions, velocities and energies of the structure stay those
+    that are seen from the clamp.
+    """
+
+    kind: Literal["clamp_acceleration"] = "clamp_acceleration"
+    """The clamp is shaken."""
+    acceleration_m_s2: float
+    """Its size [m/s²], positive along `direction`."""
+    direction: Vector = AXES[2]
+    """Of any length but 0, in the clamp's frame before it is turned. By default up."""
+
+    def _felt(self, structure: Structure) -> bool:
+        twists = "torsion" in structure.joints and not _on_axis(structure)
+        return bool(self.acceleration_m_s2) and (
+            twists or _is_felt(structure, [self.direction], follows=False)
+        )
 
 
-def loaded_span(load: DistributedForce, span_m: float) -> tuple[float, float]:
+Single = TipForce | TipMoment | DistributedForce | DistributedMoment | ClampAcceleration
+"""A load that follows one history."""
+
+_EachSingle = (
+    Annotated[TipForce, Tag("tip_force")]
+    | Annotated[TipMoment, Tag("tip_moment")]
+    | Annotated[DistributedForce, Tag("distributed")]
+    | Annotated[DistributedMoment, Tag("distributed_moment")]
+    | Annotated[ClampAcceleration, Tag("clamp_acceleration")]
+)
+
+
+class SeveralLoads(Record):
+    """Loads that act at once, each with its own history."""
+
+    kind: Literal["several"] = "several"
+    """More than one load."""
+    loads: Annotated[tuple[Annotated[_EachSingle, Discriminator(by_kind)], ...], Field(min_length=1)]
+    """Each as if it acted alone; their forces add up."""
+
+    @property
+    def parts(self) -> tuple[Single, ...]:
+        """The loads of one history each that it is made of."""
+        return self.loads
+
+    @property
+    def start_s(self) -> float:
+        """When the first begins to act [s]."""
+        return min(load.start_s for load in self.loads)
+
+    def until(self, end_s: float) -> Self:
+        """The same loads, which end at `end_s` [s] if they do not end before."""
+        return self.model_copy(update={"loads": tuple(load.until(end_s) for load in self.loads)})
+
+    def with_tables(self, root: Path) -> Self:
+        """The same loads with the numbers of the files of their histories; ValueError as `with_table`."""
+        return self.model_copy(update={"loads": tuple(load.with_tables(root) for load in self.loads)})
+
+    def check(self, structure: Structure) -> None:
+        """ValueError if any of them cannot be felt, or acts outside the span."""
+        for number, load in enumerate(self.loads):
+            try:
+                load.check(structure)
+            except ValueError as error:
+                raise ValueError(f"loads[{number}]: {error}") from None
+
+
+Load = Annotated[_EachSingle | Annotated[SeveralLoads, Tag("several")], Discriminator(by_kind)]
+
+
+def loaded_span(load: DistributedForce | DistributedMoment, span_m: float) -> tuple[float, float]:
     """Where the load begins and ends [m]; ValueError unless it lies within the span."""
     to_m = span_m if load.to_m is None else load.to_m
     if not 0.0 <= load.from_m < to_m <= span_m:
@@ -170,13 +298,40 @@ def loaded_span(load: DistributedForce, span_m: float) -> tuple[float, float]:
     return load.from_m, to_m
 
 
-def check_load(load: TipForce | DistributedForce, structure: Structure) -> None:
-    """ValueError for a load outside the span, or one that no joint of the structure can feel."""
-    if isinstance(load, DistributedForce):
-        loaded_span(load, structure.length_m)
-    for force in load.directions:
-        for axis in structure.felt_axes:
-            if abs(sum(f * a for f, a in zip(force, axis, strict=True))) > 1e-12 * sum(map(abs, force)):
-                return
-    joints = ", ".join(structure.ordered_joints)
-    raise ValueError(f"no joint feels it; allowed: a force that can do work on the joints ({joints})")
+def _axes_of(spreads: Sequence[Spread | MomentSpread | None]) -> list[Vector]:
+    """The axes along or about which something acts."""
+    return [axis for axis, spread in zip(AXES, spreads, strict=True) if spread is not None and spread.size]
+
+
+def _is_felt(structure: Structure, directions: Iterable[Vector], follows: bool) -> bool:
+    """Whether a force along any of the directions does work on the joints."""
+    axes = enumerate(structure.clamp_axes)
+    return _has_part(structure, directions, [k for k, axis in axes if axis in structure.felt_axes], follows)
+
+
+def _turns(structure: Structure, directions: Iterable[Vector], follows: bool) -> bool:
+    """Whether a moment about any of the directions does work on the joints.
+
+    Joints of one kind feel it about their own axis; with a second kind they turn one another's.
+    """
+    own = [TURNS_ABOUT[joint] for joint in structure.ordered_joints if joint in TURNS_ABOUT]
+    alone = len(own) < 2 and structure.straight
+    return _has_part(structure, directions, own if alone else [0, 1, 2], follows)
+
+
+def _on_axis(structure: Structure) -> bool:
+    """Whether the centres of gravity lie on the elastic axis."""
+    return structure.straight and not (
+        structure.point_masses or any(structure.values_of("centre_of_gravity_offset_m"))
+    )
+
+
+def _has_part(structure: Structure, directions: Iterable[Vector], axes: Sequence[int], follows: bool) -> bool:
+    """Whether a direction has a component along one of these axes, the clamp's or, if it follows, its own."""
+    frame = AXES if follows else structure.clamp_axes
+    return any(
+        abs(sum(d * a for d, a in zip(direction, frame[k], strict=True)))
+        > _ROUNDING * sum(map(abs, direction))
+        for direction in directions
+        for k in axes
+    )

@@ -8,7 +8,6 @@ from flexsurr.config.aircraft import SURFACES, Aircraft
 from flexsurr.config.feature_limits import FeatureLimits
 from flexsurr.config.files import FilesStudy
 from flexsurr.config.flight import CONTROL_NAMES
-from flexsurr.config.load import check_load
 from flexsurr.config.own_network import own_network
 from flexsurr.config.sample_study import SampleStudy
 from flexsurr.config.structure import Structure
@@ -70,9 +69,12 @@ def _trajectories(files: StudyFiles) -> ResolvedStudy:
             "modes",
         )
     try:
-        check_load(study.evaluation.load, structure)
+        study.evaluation.load.check(structure)
+        load = study.evaluation.load.with_tables(files.root)
     except ValueError as error:
         files.refuse(str(error), "evaluation", "load")
+    evaluation = study.evaluation.model_copy(update={"load": load})
+    study = study.model_copy(update={"evaluation": evaluation})
     return ResolvedStudy(files.name, study, structure, sweeps, tuple(others), own_networks)
 
 

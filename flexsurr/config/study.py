@@ -6,7 +6,8 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Field, field_validator, model_validator
 
 from flexsurr.config.activation import Activation
-from flexsurr.config.load import Load, Sine, TipForce
+from flexsurr.config.history import Sine
+from flexsurr.config.load import Load, TipForce
 from flexsurr.config.schema import Record
 from flexsurr.config.structure import Positive
 
@@ -211,7 +212,9 @@ class EvaluationSettings(Record):
     costs [s].
     """
     load: Load = TipForce(force_N=10.0, history=Sine(frequency_rad_s=50.0))
-    """What acts in forced responses, from rest. By default 10 sin(50 t) N up at the tip."""
+    """What acts in forced responses, from rest: one load, or several. By default 10 sin(50 t) N up at the
+    tip.
+    """
     longest_load_s: Positive = 5.0
     """The load ends at a random time up to this [s]."""
     learned_load: LearnedLoadSettings = LearnedLoadSettings()
@@ -244,7 +247,7 @@ class EvaluationSettings(Record):
 
     @model_validator(mode="after")
     def _the_load_begins_in_time(self) -> Self:
-        start_s = self.load.history.start_s
+        start_s = self.load.start_s
         if not start_s < self.longest_load_s:
             raise ValueError(
                 f"longest_load_s: {self.longest_load_s} is not allowed; allowed: more than {start_s}, where "

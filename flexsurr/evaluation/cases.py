@@ -16,9 +16,9 @@ from flexsurr.beam import (
     loaded,
     reduced_order,
 )
+from flexsurr.beam.loads import load_ends_s
 from flexsurr.config.study import EvaluationSettings, Integrator, Study, Variant
 from flexsurr.simulation import simulate
-from flexsurr.simulation.history import end_s
 from flexsurr.simulation.rhs import Array, Model
 
 Response = Literal["free", "forced", "sustained"]
@@ -47,7 +47,7 @@ class Case:
     @property
     def free_from_s(self) -> float:
         """Time [s] from which no load acts."""
-        return 0.0 if self.load is None else end_s(self.load.history)
+        return 0.0 if self.load is None else load_ends_s(self.load)
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,7 @@ def free_cases(basis: ModalBasis, study: Study, first: int, count: int) -> list[
 def forced_cases(basis: ModalBasis, study: Study, first: int, count: int) -> list[Case]:
     """Responses from rest to the study's load, which ends at a random time in (start, longest_load_s]."""
     settings = study.evaluation
-    longest_s, start_s = settings.longest_load_s, settings.load.history.start_s
+    longest_s, start_s = settings.longest_load_s, settings.load.start_s
     at_rest = rest_state(basis)
     cases = []
     for number in range(first, first + count):

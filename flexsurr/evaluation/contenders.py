@@ -32,7 +32,8 @@ class Contender:
     def under(self, basis: ModalBasis, case: Case) -> Model:
         """The field with the load of the case; beside flexsurr's own in torch the load is in NumPy."""
         if self.learned_load is not None and case.load is not None:
-            return LearnedLoad(self.field, self.learned_load, case.load.history)
+            histories = tuple(part.history for part in case.load.parts)
+            return LearnedLoad(self.field, self.learned_load, histories)
         if self.implementation == "torch":
             return under(self.field, basis, case, "compiled" if self.steppable else "numpy")
         return under(self.field, basis, case, self.implementation)

@@ -6,17 +6,20 @@ stands for. Here the points where forces act are learned as functions of η, and
     Q̂ = Σ (∂r̂_i/∂η)ᵀ f_i
 
 For a load of fixed shape f the map η → Q̂ is then fitted by itself: once as a polynomial, once as a network,
-both far smaller than the kinematics. Loads along several axes that follow one history are one such shape.
+both far smaller than the kinematics. Loads along several axes that follow one history are one such shape; of
+loads with several histories the maps hold the forces of each. Positions do not tell what a moment does, or a
+load that follows: the maps of such loads are fitted to the exact forces.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
 
-from flexsurr.beam import ModalBasis, chain, load_forces, tip_position, tip_twist
-from flexsurr.beam.kinematics import configuration, generalised_forces, tip_up
-from flexsurr.beam.loads import Forces
+from flexsurr.beam import ModalBasis, chain, tip_position, tip_twist
+from flexsurr.beam.kinematics import configuration, tip_up
+from flexsurr.beam.loads import Forces, Part, acting, load_parts
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import EvaluationSettings, Variant
 from flexsurr.simulation.rhs import Array
@@ -50,7 +53,7 @@ class LearnedKinematics:
         return np.asarray(np.arctan2(up[:, 0], up[:, 1]))
 
     def generalised_force(self, eta: Array, load: Forces) -> Array:
-        """Q̂ (k, r) at η (k, r), at a factor of 1."""
+        """Q̂ (k, r) at η (k, r) of dead forces on centres and tip."""
         forces = np.concatenate([load.on_centres.ravel(), load.on_tip, np.zeros(2)])
         return generalised_force(self.outputs, eta, forces)
 
@@ -68,10 +71,10 @@ def learn_kinematics(basis: ModalBasis, eta: Array, degree: int) -> LearnedKinem
 
 @dataclass(frozen=True, eq=False)
 class LearnedForces:
-    """The generalised forces Q̂(η) of one load: by way of the kinematics, and fitted by themselves twice."""
+    """The generalised forces Q̂(η) of a load: by way of the kinematics, and fitted by themselves twice."""
 
     kinematics: LearnedKinematics
-    load: Forces
+    load: tuple[Part, ...]
     polynomial: PolynomialMap
     network: NetworkMap
 
@@ -84,14 +87,13 @@ def learn_forces(
     Raises ValueError where a coordinate does not vary over the samples, or where the load moves no mode.
     """
     settings = evaluation.learned_load
-    load = load_forces(basis.structure, evaluation.load)
+    parts = load_parts(basis.structure, evaluation.load)
     kinematics = learn_kinematics(basis, eta, settings.kinematics_degree)
-    size = np.linalg.norm(load.on_centres) + np.linalg.norm(load.on_tip)
-    reach = size * basis.structure.length_m * np.linalg.norm(basis.modes, 2)
-    if not np.max(np.abs(exact_forces(basis, load, held_out))) > _ROUNDING * reach:
+    if not np.max(np.abs(exact_forces(basis, parts, held_out))) > _ROUNDING * _reach(basis, parts):
         raise ValueError(f"{basis.structure.name}: the load moves none of the {basis.modes.shape[1]} mode(s)")
-    forces, expected = (kinematics.generalised_force(at, load) for at in (eta, held_out))
-    names = tuple(f"Q{k + 1}" for k in range(eta.shape[1]))
+    forces, expected = (_targets(basis, kinematics, parts, at) for at in (eta, held_out))
+    loads = [f"_of_load_{k + 1}" for k in range(len(parts))] if len(parts) > 1 else [""]
+    names = tuple(f"Q{k + 1}{of_load}" for of_load in loads for k in range(eta.shape[1]))
     inputs = coordinates(eta)
     even, whole = (
         fit_polynomial_map(inputs, eta, forces, names, settings.degree, only) for only in (True, False)
@@ -100,7 +102,7 @@ def learn_forces(
     network = fit_network_map(
         inputs, eta, forces, names, settings.hidden, settings.activation, settings.epochs
     )
-    return LearnedForces(kinematics, load, even if errors[0] <= AS_GOOD * errors[1] else whole, network)
+    return LearnedForces(kinematics, parts, even if errors[0] <= AS_GOOD * errors[1] else whole, network)
 
 
 def learned_load_table(
@@ -120,11 +122,12 @@ def learned_load_table(
         # the angle jumps at ±π, its error does not
         "twist_largest_error_rad": float(np.max(np.abs(np.angle(np.exp(1j * turn))))),
     }
-    maps = {
-        "kinematics": (kinematics.outputs, kinematics.generalised_force(eta, learned.load), seen),
-        "polynomial": (learned.polynomial, learned.polynomial(eta), {}),
-        "network": (learned.network, learned.network(eta), {}),
-    }
+    maps: dict[str, tuple[LearnedMap, Array, dict[str, float]]] = {}
+    if tell_positions(learned.load):
+        through = _targets(basis, kinematics, learned.load, eta)
+        maps["kinematics"] = (kinematics.outputs, through, seen)
+    maps["polynomial"] = (learned.polynomial, learned.polynomial(eta), {})
+    maps["network"] = (learned.network, learned.network(eta), {})
     exact = exact_forces(basis, learned.load, eta)
     rows = [
         {
@@ -141,11 +144,33 @@ def learned_load_table(
     return pd.DataFrame(rows)
 
 
-def exact_forces(basis: ModalBasis, load: Forces, eta: Array) -> Array:
-    """Q (k, r) at η (k, r) from the kinematics, at a factor of 1."""
+def exact_forces(basis: ModalBasis, parts: Sequence[Part], eta: Array) -> Array:
+    """Q (k, parts r) at η (k, r) from the kinematics, at factors of 1, part after part of the load."""
     beam = chain(basis.structure)
     at = configuration(beam, eta @ basis.modes.T)
-    return generalised_forces(beam, at, np.zeros_like(load.on_centres), *load) @ basis.modes
+    alone = [acting(beam.elements, [part], [1.0]) for part in parts]
+    return np.hstack([now.generalised(beam, at) @ basis.modes for now in alone])
+
+
+def tell_positions(parts: Sequence[Part]) -> bool:
+    """Whether positions of centres and tip tell all that it does: dead forces on the elastic axis."""
+    return not any(part.follows or part.forces.on_masses.any() or part.forces.couples.any() for part in parts)
+
+
+def _targets(basis: ModalBasis, kinematics: LearnedKinematics, parts: Sequence[Part], eta: Array) -> Array:
+    """Q (k, parts r) at η (k, r) that maps are fitted to."""
+    if not tell_positions(parts):
+        return exact_forces(basis, parts, eta)
+    return np.hstack([kinematics.generalised_force(eta, part.forces) for part in parts])
+
+
+def _reach(basis: ModalBasis, parts: Sequence[Part]) -> float:
+    """A bound of the generalised forces of any part, at a factor of 1."""
+    sizes = []
+    for forces in (part.forces for part in parts):
+        pushes = sum(np.linalg.norm(push) for push in (forces.on_centres, forces.on_tip, forces.on_masses))
+        sizes.append(pushes * basis.structure.length_m + np.linalg.norm(forces.couples))
+    return float(max(sizes) * np.linalg.norm(basis.modes, 2))
 
 
 def relative_error(found: Array, expected: Array) -> float:

@@ -1,6 +1,7 @@
 """Any compiled model under a load whose generalised forces are learned: no kinematics are computed.
 
-A load of fixed shape follows one history, F(t) = s(t) f, and so do its generalised forces, s(t) Q̂(η).
+A load of fixed shape follows one history, F(t) = s(t) f, and so do its generalised forces, s(t) Q̂(η). Of
+several loads at once the forces add up.
 """
 
 from dataclasses import dataclass
@@ -10,11 +11,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from flexsurr.simulation.history import (
+    HistoriesKernel,
     History,
-    HistoryKernel,
     breakpoints,
+    histories_kernel,
     history_factor,
-    history_kernel,
 )
 from flexsurr.simulation.mapping import mapping
 from flexsurr.simulation.rhs import Array, evaluate, implements_rhs, rhs
@@ -22,41 +23,47 @@ from flexsurr.surrogates.learned_map import LearnedMap
 
 
 class LearnedLoadKernel(NamedTuple):
-    """A model's kernel, that of the forces, and the history."""
+    """A model's kernel, that of the forces of k loads, and their histories."""
 
     model: Any
     forces: Any
-    history: HistoryKernel
+    histories: HistoriesKernel
 
 
 @implements_rhs(LearnedLoadKernel, inline=False)
 def _learned_load(kernel, t, x, dx, work):
     rhs(kernel.model, t, x, dx, work)
-    factor = history_factor(kernel.history, t)
-    if factor != 0.0:
-        r = x.size // 2
-        mapping(kernel.forces, x[:r], work[:r], work[r:])
+    r, loads = x.size // 2, kernel.histories.kinds.size
+    known = False
+    for k in range(loads):
+        factor = history_factor(kernel.histories, k, t)
+        if factor == 0.0:
+            continue
+        if not known:
+            mapping(kernel.forces, x[:r], work[: loads * r], work[loads * r :])
+            known = True
         for i in range(r):
-            dx[r + i] += factor * work[i]
+            dx[r + i] += factor * work[k * r + i]
 
 
 @dataclass(frozen=True, eq=False)
 class LearnedLoad:
     """A CompiledModel: `model`, whose states are (η, p), under a load of learned generalised forces.
 
-    `forces` maps η (r,) to Q̂ (r,) at a factor of 1. Raises ValueError where their numbers don't fit.
+    `forces` maps η (r,) to Q̂ (k r,) at factors of 1, one load after the other, each with its history. Raises
+    ValueError where their numbers don't fit.
     """
 
     model: Any  # a CompiledModel; what more it has, as an energy, is passed on
     forces: LearnedMap
-    history: History
+    histories: tuple[History, ...]
 
     def __post_init__(self) -> None:
         r = len(self.model.state_names) // 2
         inputs, outputs = len(self.forces.inputs.names), len(self.forces.output_names)
-        if (inputs, outputs) != (r, r):
+        if (inputs, outputs) != (r, r * len(self.histories)):
             raise ValueError(
-                f"a map of {inputs} coordinates to {outputs} forces"
+                f"a map of {inputs} coordinates to {outputs} forces of {len(self.histories)} load(s)"
                 f" does not fit the states {', '.join(self.model.state_names)}"
             )
 
@@ -75,7 +82,8 @@ class LearnedLoad:
     @property
     def breakpoints(self) -> tuple[float, ...]:
         """Times [s] at which the load, or the model itself, may jump."""
-        return tuple(sorted({*self.model.breakpoints, *breakpoints(self.history)}))
+        own = {time for history in self.histories for time in breakpoints(history)}
+        return tuple(sorted({*self.model.breakpoints, *own}))
 
     @property
     def energy(self) -> Any:
@@ -85,8 +93,8 @@ class LearnedLoad:
     @cached_property
     def _compiled(self) -> tuple[NamedTuple, int]:
         forces = self.forces.compiled()
-        kernel = LearnedLoadKernel(self.model.kernel, forces.kernel, history_kernel(self.history))
-        return kernel, len(forces.input_names) + forces.work_size
+        kernel = LearnedLoadKernel(self.model.kernel, forces.kernel, histories_kernel(self.histories))
+        return kernel, len(self.forces.output_names) + forces.work_size
 
     @property
     def kernel(self) -> NamedTuple:

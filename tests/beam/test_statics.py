@@ -23,7 +23,8 @@ from flexsurr.beam import (
     tip_position,
 )
 from flexsurr.beam.equilibrium import static_residual
-from flexsurr.config.load import Power, TipForce
+from flexsurr.config.history import Power
+from flexsurr.config.load import TipForce
 
 LOADS = [10.0, 50.0, 100.0, 150.0]
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from flexsurr.beam import draw_initial_conditions, loaded, reduce, reduced_order
-from flexsurr.config.load import DistributedForce, Power, Spread
+from flexsurr.config.history import Power
+from flexsurr.config.load import DistributedForce, Spread
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import (
     InitialConditions,

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from flexsurr.beam import load_forces, loaded, reduce, reduced_order
-from flexsurr.beam.loads import Forces
-from flexsurr.config.load import DistributedForce, Power, Spread
+from flexsurr.beam import loaded, reduce, reduced_order
+from flexsurr.beam.loads import Forces, Part, acting, load_parts
+from flexsurr.config.history import Constant, Power, Sine
+from flexsurr.config.load import DistributedForce, SeveralLoads, Spread, TipForce, TipMoment
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import (
     EvaluationSettings,
@@ -23,6 +24,7 @@ from flexsurr.evaluation.learned_loads import (
     relative_error,
 )
 from flexsurr.simulation import simulate
+from flexsurr.surrogates import LearnedLoad
 
 TWISTED = Structure(
     name="twisted",
@@ -63,18 +65,18 @@ def test_the_exact_forces_are_those_of_the_loaded_model(twisted):
     load = settings().load
     model = loaded(reduced_order(twisted, "hamiltonian", "numpy"), twisted, load, "numpy")
     eta = coordinates(4)
-    expected = [model.generalised_force(at) for at in eta]
-    np.testing.assert_allclose(exact_forces(twisted, load_forces(TWISTED, load), eta), expected, rtol=1e-12)
+    parts = load_parts(TWISTED, load)
+    expected = [model.generalised_force(at, acting(TWISTED.elements, parts, [1.0])) for at in eta]
+    np.testing.assert_allclose(exact_forces(twisted, parts, eta), expected, rtol=1e-12)
 
 
 @pytest.mark.parametrize("what", ["on_centres", "on_tip"])
 def test_virtual_work_of_what_was_learned_is_that_of_the_kinematics(twisted, what):
     """On the centres and on the tip, and the better the degree the closer."""
-    n = TWISTED.elements
-    load = Forces(np.zeros((n, 3)), np.zeros(3))
+    load = Forces.none(TWISTED.elements)
     load = load._replace(**{what: GENERATOR.normal(size=getattr(load, what).shape)})
     eta, held_out = coordinates(1500), coordinates(100)
-    exact = exact_forces(twisted, load, held_out)
+    exact = exact_forces(twisted, [Part(load, False, Constant())], held_out)
     errors = [
         relative_error(learn_kinematics(twisted, eta, degree).generalised_force(held_out, load), exact)
         for degree in (3, 5, 7)
@@ -94,6 +96,31 @@ def test_errors_are_of_what_is_learned(twisted):
     assert 0.0 < table.loc["kinematics", "twist_largest_error_rad"] < 1e-3
     expected = exact_forces(twisted, learned.load, held_out)
     assert table.loc["network", "force_relative_error"] == relative_error(learned.network(held_out), expected)
+
+
+def test_several_loads_that_follow_are_learned_each_with_its_history(twisted):
+    """What positions do not tell is learned from the exact forces; the loaded model is the same."""
+    load = SeveralLoads(
+        loads=(
+            TipForce(force_N=2.0, follows=True, history=Sine(frequency_rad_s=5.0)),
+            TipMoment(moment_N_m=1.0, history=Power(exponent=1)),
+        )
+    )
+    eta, held_out = coordinates(600), coordinates(50)
+    chosen = EvaluationSettings(load=load, learned_load=LearnedLoadSettings(degree=6, hidden=4, epochs=2))
+    learned = learn_forces(twisted, chosen, eta, held_out)
+    assert learned.polynomial.output_names == tuple(f"Q{k}_of_load_{j}" for j in (1, 2) for k in (1, 2, 3))
+    table = learned_load_table("study", twisted, "hamiltonian", learned, held_out).set_index("map")
+    assert list(table.index) == ["polynomial", "network"]
+    assert table.loc["polynomial", "force_relative_error"] < 1e-3
+    free = reduced_order(twisted, "hamiltonian", "compiled")
+    under = loaded(free, twisted, load, "compiled")
+    through = LearnedLoad(free, learned.polynomial, tuple(part.history for part in load.parts))
+    for at in held_out[:3]:
+        x = np.concatenate([at, np.zeros(3)])
+        expected = under.derivative(0.7, x) - free.derivative(0.7, x)
+        found = through.derivative(0.7, x) - free.derivative(0.7, x)
+        np.testing.assert_allclose(found, expected, atol=1e-2 * np.abs(expected).max())
 
 
 def test_only_a_symmetric_structure_has_forces_of_even_powers(twisted, study, structure):

@@ -7,7 +7,8 @@ import pytest
 
 import flexsurr
 from flexsurr.beam import loaded, reduce, reduced_order
-from flexsurr.config.load import Sine, TipForce
+from flexsurr.config.history import Sine
+from flexsurr.config.load import TipForce
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import InitialConditions, Reduction
 from flexsurr.library import ANY_STIFFNESS, OutOfRange
