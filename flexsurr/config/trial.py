@@ -8,9 +8,9 @@ listed in FIELDS, MAPS or OPTIMISERS: sweeps and tables follow.
 from collections.abc import Iterable
 from functools import cache
 from types import NoneType
-from typing import Annotated, Any, ClassVar, Literal, cast, get_args
+from typing import Annotated, Any, ClassVar, Literal, Self, cast, get_args
 
-from pydantic import AfterValidator, Field, ValidationError, create_model
+from pydantic import AfterValidator, Field, ValidationError, create_model, model_validator
 
 from flexsurr.config.activation import Activation
 from flexsurr.config.errors import nearest
@@ -21,6 +21,7 @@ from flexsurr.config.study import Count
 
 ScalingKind = Literal["canonical", "per_feature", "min_max"]
 Sampling = Literal["pseudo_random", "sobol"]
+PotentialKind = Literal["polynomial"]
 LatticeForm = Literal["full", "linear_in_modes"]
 Layers = Annotated[tuple[Count, ...], Field(min_length=1)]
 
@@ -88,6 +89,18 @@ class FieldPolynomial(StateField):
     """polynomial gives an energy; port_hamiltonian mass matrix, stiffness and damping."""
     degree: Count
     """Degree of the polynomials."""
+    potential: PotentialKind | None = Field(default=None, exclude_if=lambda value: value is None)
+    """Of port_hamiltonian alone. polynomial: its potential is one, which knows weight and any equilibrium, as
+    a structure under gravity needs. None: ½ qᵀKq.
+    """
+
+    @model_validator(mode="after")
+    def _an_energy_holds_its_potential(self) -> Self:
+        if self.potential is not None and self.architecture != "port_hamiltonian":
+            raise ValueError(
+                f"potential: {self.potential!r} is not allowed with polynomial, whose energy has any"
+            )
+        return self
 
 
 class PortHamiltonianNetwork(TrainedField):
@@ -99,6 +112,10 @@ class PortHamiltonianNetwork(TrainedField):
     """Neurons of its one hidden layer, in brackets all the same: [32]."""
     activation: Activation
     """Activation function of its neurons."""
+    potential: PotentialKind | None = Field(default=None, exclude_if=lambda value: value is None)
+    """polynomial: the potential is one, found by least squares, which knows weight and any equilibrium, as a
+    structure under gravity needs. None: ½ qᵀKq.
+    """
 
     optimisers = ("levenberg_marquardt",)
 

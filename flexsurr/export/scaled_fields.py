@@ -125,7 +125,12 @@ def _port_hamiltonian(surrogate: PortHamiltonian, x: Value) -> tuple[Value, Valu
     rates = solve(mass, p)
     springs = q @ surrogate.scaled_stiffness
     forces = gyroscopic(rates) - springs - rates @ surrogate.scaled_damping
-    return concat([rates, forces]), 0.5 * (p * rates).sum() + 0.5 * (q * springs).sum()
+    energy = 0.5 * (p * rates).sum() + 0.5 * (q * springs).sum()
+    if surrogate.potential is not None:
+        lower, coefficients = surrogate.potential.gradient_terms
+        forces = forces - monomials(lower, q) @ coefficients
+        energy = energy + monomials(surrogate.potential.exponents, q) @ surrogate.potential.coefficients
+    return concat([rates, forces]), energy
 
 
 def _network_mass(surrogate: NetworkPortHamiltonian, q: Value) -> tuple[Value, Any]:

@@ -31,6 +31,7 @@ TRAINING_COLUMNS = (
     "options",
     "scaling",
     "samples_per_trajectory",
+    "potential",
     "optimiser",
     "learning_rate",
     "weight_decay",

@@ -5,17 +5,20 @@
 so that q̇ = M⁻¹ p and ṗ = ½ ∂/∂q (q̇ᵀ M q̇) − K q − C q̇ + u, and with no load dH/dt = −q̇ᵀ C q̇ ≤ 0 (van der
 Schaft & Jeltsema, *Port-Hamiltonian Systems Theory*, 2014, ch. 6). The mass matrix is what is learned, not
 its inverse: with measured q̇ the equations are linear in M, K and C.
+
+½ qᵀ K q knows no weight, and no equilibrium but the origin. A `Potential` V(q) beside it does.
 """
 
 from abc import abstractmethod
-from dataclasses import dataclass
-from typing import ClassVar
+from dataclasses import dataclass, field
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numba import njit
 
 from flexsurr.simulation.rhs import Array
 from flexsurr.surrogates.packed import OPTIONS, packed_size
+from flexsurr.surrogates.potential import Potential
 from flexsurr.surrogates.scaling import FeatureScaling
 from flexsurr.surrogates.surrogate import Surrogate
 
@@ -24,11 +27,17 @@ from flexsurr.surrogates.surrogate import Surrogate
 class PortHamiltonian(Surrogate):
     """A subclass has a mass matrix; r is the number of pairs (q, p). Everything here is in scaled states."""
 
+    potential: Potential | None = field(default=None, kw_only=True)
+
     architecture: ClassVar[str] = "port_hamiltonian"
 
     def __post_init__(self) -> None:
         if isinstance(self.scaling, FeatureScaling):
             raise ValueError("a port-Hamiltonian surrogate takes a canonical scaling")
+        if self.potential is not None and self.potential.exponents.shape[1] != self.pairs:
+            raise ValueError(
+                f"a potential of {self.potential.exponents.shape[1]} coordinates for {self.pairs}"
+            )
         super().__post_init__()
 
     @property
@@ -65,6 +74,8 @@ class PortHamiltonian(Surrogate):
         rates = np.linalg.solve(self.scaled_mass(q), p[..., None])[..., 0]
         gyroscopic = np.einsum("...kij,...i,...j->...k", self.scaled_mass_derivatives(q), rates, rates)
         forces = 0.5 * gyroscopic - q @ self.scaled_stiffness - rates @ self.scaled_damping
+        if self.potential is not None:
+            forces = forces - self.potential.gradient(q)
         return np.concatenate([rates, forces], axis=-1)
 
     def scaled_energy(self, x: Array) -> Array:
@@ -74,7 +85,24 @@ class PortHamiltonian(Surrogate):
         energy: Array = 0.5 * np.sum(p * rates, axis=-1) + 0.5 * np.sum(
             q * (q @ self.scaled_stiffness), axis=-1
         )
-        return energy
+        return energy if self.potential is None else energy + self.potential.value(q)
+
+    @abstractmethod
+    def own_kernel(self) -> tuple[NamedTuple, int]:
+        """The compiled form without a potential, and the size of its workspace."""
+
+    def kernel(self) -> tuple[NamedTuple, int]:
+        """The compiled form, with the potential's force beside it if there is one."""
+        own, work_size = self.own_kernel()
+        if self.potential is None:
+            return own, work_size
+        _, of_q, _, _ = self._scales()
+        return self.potential.beside(own, work_size, of_q, self.scaling.energy / of_q)
+
+    def arrays_to_keep(self) -> dict[str, np.ndarray]:
+        """Parameters, and the potential if there is one."""
+        kept = super().arrays_to_keep()
+        return kept if self.potential is None else kept | self.potential.arrays_to_keep()
 
     def energy(self, x: Array) -> Array:
         """H(x) = H(x) − H(0), (..., 2r) -> (...), in the product of the units of q and p per second."""
@@ -87,7 +115,7 @@ class PortHamiltonian(Surrogate):
 
     @property
     def stiffness(self) -> Array:
-        """K (r, r): the restoring force is −K q, in the units of p per second."""
+        """K (r, r): the restoring force is −K q, in the units of p per second, without a potential's."""
         _, of_q, _, _ = self._scales()
         return self.scaled_stiffness * self.scaling.energy / np.outer(of_q, of_q)
 

@@ -104,7 +104,7 @@ class NetworkPortHamiltonian(PortHamiltonian):
         gradient: Array = half + np.swapaxes(half, -1, -2)
         return gradient
 
-    def kernel(self) -> tuple[NamedTuple, int]:
+    def own_kernel(self) -> tuple[NamedTuple, int]:
         """One sweep through the neurons forwards and one back, and a small system."""
         _, of_q, of_p, of_rates = self._scales()
         weights, biases, readout, constant, *_ = self.arrays()

@@ -83,7 +83,7 @@ class PolynomialPortHamiltonian(PortHamiltonian):
         monomials = evaluate_monomials(lowered, q)
         return symmetric(np.einsum("kem,...m->...ke", coefficients, monomials), self.pairs)
 
-    def kernel(self) -> tuple[NamedTuple, int]:
+    def own_kernel(self) -> tuple[NamedTuple, int]:
         """Monomials as products, their adjoints for the gyroscopic term, and a small system."""
         _, of_q, of_p, of_rates = self._scales()
         rows, columns = np.tril_indices(self.pairs)

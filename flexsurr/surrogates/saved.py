@@ -17,6 +17,7 @@ from flexsurr.surrogates.polynomial import PolynomialHamiltonian
 from flexsurr.surrogates.polynomial_map import PolynomialMap
 from flexsurr.surrogates.port_hamiltonian_network import NetworkPortHamiltonian
 from flexsurr.surrogates.port_hamiltonian_polynomial import PolynomialPortHamiltonian
+from flexsurr.surrogates.potential import Potential
 from flexsurr.surrogates.scaling import FeatureScaling, PairScaling, Scaling, StateScaling
 from flexsurr.surrogates.surrogate import Surrogate, compiled
 
@@ -84,14 +85,18 @@ def _surrogate(header: dict[str, Any], arrays: dict[str, np.ndarray]) -> Surroga
 
         return saved_torch_surrogate(header, arrays, **common)
     common["parameters"] = arrays["parameters"]
-    polynomial = {
+    polynomials: dict[str, Callable[..., Surrogate]] = {
         PolynomialHamiltonian.architecture: PolynomialHamiltonian,
         PolynomialPortHamiltonian.architecture: PolynomialPortHamiltonian,
-    }.get(architecture)
+    }
+    polynomial = polynomials.get(architecture)
+    if architecture == PolynomialPortHamiltonian.architecture:
+        common["potential"] = Potential.kept(arrays)
     if polynomial is not None and "hidden" not in header:
         return polynomial(**common, exponents=arrays["exponents"].astype(np.int64, casting="safe"))
     common |= {"hidden": tuple(header["hidden"]), "activation": header["activation"]}
     if architecture == NetworkPortHamiltonian.architecture:
+        common["potential"] = Potential.kept(arrays)
         return NetworkPortHamiltonian(**common, floor=arrays["floor"], even=bool(header["even"]))
     return NETWORKS[architecture](**common)
 

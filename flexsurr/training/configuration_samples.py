@@ -19,11 +19,13 @@ VALIDATION = 0.2  # configurations to validate on, over those to train on
 class ConfigurationSamples(Dataset):
     """A state (η, p = M η̇) at each configuration with its derivative, and what does not depend on p.
 
-    `mass` (m, r, r) is M(η) at the training samples. `stiffness` (r, r) is K of the forces −K η at rest, the
-    best one where gravity makes them another function of η; `damping` (r, r) is C.
+    `mass` (m, r, r) is M(η) at the training samples, `forces` (m, r) what acts there at rest, −∂V/∂η.
+    `stiffness` (r, r) is K of the forces −K η at rest, the best one where gravity makes them another function
+    of η; `damping` (r, r) is C.
     """
 
     mass: Array
+    forces: Array
     stiffness: Array
     damping: Array
 
@@ -57,6 +59,7 @@ def configuration_samples(
         state_units=model.state_units,
         sha256=sha256.hexdigest(),
         mass=mass[:count],
+        forces=forces[:count],
         stiffness=_stiffness(eta, forces),
         damping=basis.damping,
     )

@@ -106,7 +106,9 @@ def _begun(trial: Iterative, dataset: Dataset) -> tuple[Surrogate, Loss, Loss, O
     training = dataset.x_train, dataset.dx_train
     validation = dataset.x_validation, dataset.dx_validation
     if isinstance(trial, PortHamiltonianNetwork):
-        port = untrained_port_hamiltonian(dataset, trial.hidden, trial.activation, trial.seed)
+        port = untrained_port_hamiltonian(
+            dataset, trial.hidden, trial.activation, trial.seed, trial.potential == "polynomial"
+        )
         inverse, forward = (PortHamiltonianObjective.of(port, *training, forward=f) for f in (False, True))
         held_out = PortHamiltonianObjective.of(port, *validation, forward=True)
         return port, forward, held_out, InverseThenForward(inverse, forward, port.parameters)
@@ -158,7 +160,7 @@ def _fit_linear(trial: FieldPolynomial, source: SampleSource, report: Report | N
         surrogate = fit_polynomial(source, trial.degree)
     else:
         try:
-            surrogate = fit_port_hamiltonian(source, trial.degree)
+            surrogate = fit_port_hamiltonian(source, trial.degree, trial.potential == "polynomial")
         except NotPositiveDefinite as failure:
             surrogate, reason = failure.surrogate, str(failure)
     training = FieldErrors.over(surrogate, source.training_blocks())

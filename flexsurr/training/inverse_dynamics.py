@@ -4,10 +4,13 @@ With measured rates, both
 
     M(q) q̇ = p        and        ½ ∂/∂q (q̇ᵀ M(q) q̇) − K q − C q̇ = ṗ
 
-are linear in the coefficients of M, in K and in C. A polynomial M⁻¹ would be no linear problem in K and C
+are linear in the coefficients of M, in K and in C. So they are with −∇V(q) in the place of −K q, for a
+potential V that is a polynomial. A polynomial M⁻¹ would be no linear problem in K and C
 together with the field it makes, and fits far worse. Where M is known at sampled configurations, no rates are
 needed: M depends on q alone.
 """
+
+import math
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,12 +25,15 @@ from flexsurr.surrogates.monomials import (
     monomials_to_degree,
 )
 from flexsurr.surrogates.packed import pack, packed_size, semidefinite_factor, symmetric
+from flexsurr.surrogates.potential import Potential
 from flexsurr.training.configuration_samples import ConfigurationSamples
 from flexsurr.training.dataset import SampleSource, for_each_piece
 from flexsurr.training.losses import FieldErrors
 from flexsurr.training.triangle import Triangle
 
 CHUNK = 1 << 22  # elements of the matrix that exist at a time: 32 MB
+POTENTIAL_DEGREE = 10
+POTENTIAL_MONOMIALS = 400
 AS_GOOD = 2.0  # a smaller set of monomials is kept if it validates within this factor of the larger
 
 
@@ -45,24 +51,31 @@ class NotPositiveDefinite(Exception):
 class InverseDynamics:
     """The least-squares problem for monomials up to `degree`, fed block by block.
 
-    Errors count relative to the spread of the channels: of p in the first equation, of ṗ in the second.
-    Memory is that of one block and of a triangle of the unknowns, however many samples there are.
+    With a `potential` its coefficients stand where otherwise K does. Errors count relative to the spread of
+    the channels: of p in the first equation, of ṗ in the second. Memory is that of one block and of a
+    triangle of the unknowns, however many samples there are.
     """
 
-    def __init__(self, degree: int, scaling: PairScaling, source: SampleSource) -> None:
+    def __init__(
+        self, degree: int, scaling: PairScaling, source: SampleSource, potential: bool = False
+    ) -> None:
         self.scaling, self._spread = scaling, channel_spread(scaling, source.scales)
         self._states = source.state_names, source.state_units
         self.pairs = len(scaling.q)
         self.exponents = _monomials(self.pairs, degree)
         self._lowered, self._derivative = differentiate(self.exponents)
         self._entries = packed_size(self.pairs)
-        self._triangle = Triangle(self._entries * (len(self.exponents) + 2))
+        self._springs = _potential_monomials(self.pairs) if potential else None
+        # columns of M, of what pulls back, and of C
+        pulls = self._entries if self._springs is None else len(self._springs)
+        self._columns = np.cumsum([0, self._entries * len(self.exponents), pulls, self._entries])
+        self._triangle = Triangle(int(self._columns[-1]))
 
     def add(self, x: Array, dx: Array) -> None:
         """Samples of states `x` and derivatives `dx` (m, 2r) in their units."""
         count = 2 * self.pairs
         x, dx = x / self.scaling.states(count), dx / self.scaling.rates(count)
-        step = max(CHUNK // (count * self._entries * (len(self.exponents) + 2)), 1)
+        step = max(CHUNK // (count * int(self._columns[-1])), 1)
         for first in range(0, len(x), step):
             self._triangle.add(self._rows(x[first : first + step], dx[first : first + step]))
 
@@ -73,18 +86,20 @@ class InverseDynamics:
         # what a packed symmetric matrix S gives: S v, and ½ vᵀ S v
         units = symmetric(np.eye(self._entries), r)
         of_rates = np.einsum("eij,sj->sie", units, rates)
-        of_q = np.einsum("eij,sj->sie", units, q)
+        springs = self._springs
+        pulling = np.einsum("eij,sj->sie", units, q) if springs is None else gradients(springs, q)
         kinetic = 0.5 * np.einsum("eij,si,sj->se", units, rates, rates)
         monomials = evaluate_monomials(self.exponents, q)
         slopes = np.einsum(
             "sm,kmi->ski", evaluate_monomials(self._lowered, q), self._derivative, optimize=True
         )
-        rows = np.zeros((samples, 2 * r, self._entries * (len(self.exponents) + 2) + 1))
-        mass = rows[..., : -2 * self._entries - 1].reshape(samples, 2 * r, self._entries, -1)
+        _, first, second, last = self._columns
+        rows = np.zeros((samples, 2 * r, last + 1))
+        mass = rows[..., :first].reshape(samples, 2 * r, self._entries, -1)
         mass[:, :r] = of_rates[..., None] * monomials[:, None, None, :]
         mass[:, r:] = kinetic[:, None, :, None] * slopes[:, :, None, :]
-        rows[:, r:, -2 * self._entries - 1 : -self._entries - 1] = -of_q
-        rows[:, r:, -self._entries - 1 : -1] = -of_rates
+        rows[:, r:, first:second] = -pulling
+        rows[:, r:, second:last] = -of_rates
         rows[:, :r, -1], rows[:, r:, -1] = p, forces
         rows /= self._spread[:, None]
         return rows.reshape(samples * 2 * r, -1)
@@ -92,11 +107,20 @@ class InverseDynamics:
     def solve(self, even: bool) -> PolynomialPortHamiltonian:
         """The fitted surrogate; `even`: with even powers alone, which is what a symmetric structure has."""
         kept = _kept(self.exponents, even)
-        chosen = np.concatenate([np.tile(kept, self._entries), np.ones(2 * self._entries, dtype=np.bool_)])
+        _, first, second, last = self._columns
+        chosen = np.concatenate([np.tile(kept, self._entries), np.ones(last - first, dtype=np.bool_)])
         solution = self._triangle.solve(chosen)
+        mass, pulls, dampers = np.split(
+            solution, [len(solution) - last + first, len(solution) - last + second]
+        )
         # what noise makes of a direction without damping may be slightly negative
-        solution[-self._entries :] = semidefinite_factor(symmetric(solution[-self._entries :], self.pairs))
-        return PolynomialPortHamiltonian(solution, self.scaling, *self._states, self.exponents[kept])
+        dampers = semidefinite_factor(symmetric(dampers, self.pairs))
+        potential = None if self._springs is None else Potential(self._springs, pulls)
+        springs = pulls if potential is None else np.zeros(self._entries)
+        parameters = np.concatenate([mass, springs, dampers])
+        return PolynomialPortHamiltonian(
+            parameters, self.scaling, *self._states, self.exponents[kept], potential=potential
+        )
 
 
 class MassMatrices:
@@ -104,18 +128,22 @@ class MassMatrices:
 
     An error δM changes q̇ = M⁻¹ p by −M⁻¹ δM q̇, and with it the dampers' forces by C M⁻¹ δM q̇. The one counts
     relative to the rates, the other to the springs' forces, which it nearly balances in slow motion; both on
-    average over rates whose components are independent and as large as the samples'.
+    average over rates whose components are independent and as large as the samples'. A `potential` is fitted
+    to the forces at rest.
     """
 
-    def __init__(self, degree: int, scaling: PairScaling, samples: ConfigurationSamples) -> None:
+    def __init__(
+        self, degree: int, scaling: PairScaling, samples: ConfigurationSamples, potential: bool = False
+    ) -> None:
         self.scaling, self._samples = scaling, samples
         self.pairs = len(scaling.q)
+        self._potential = potential_of(samples, scaling) if potential else None
         self.exponents = _monomials(self.pairs, degree)
         self._entries = packed_size(self.pairs)
         self._triangle = Triangle(self._entries * len(self.exponents))
         units = symmetric(np.eye(self._entries), self.pairs)
         rates = samples.dx_train[:, : self.pairs]
-        springs = samples.x_train[:, : self.pairs] @ samples.stiffness
+        springs = samples.forces if potential else samples.x_train[:, : self.pairs] @ samples.stiffness
         sizes, forces = (np.sqrt(np.mean(values**2, axis=0))[:, None] for values in (rates, springs))
         inverse = np.linalg.inv(samples.mass)
         errors = np.concatenate([inverse / sizes, samples.damping @ inverse / forces], axis=1)
@@ -138,7 +166,7 @@ class MassMatrices:
         of_products = np.outer(q, q)
         parameters = [
             coefficients * (pack(of_products) * energy / action**2)[:, None],
-            pack(self._samples.stiffness * of_products / energy),
+            pack(self._samples.stiffness * of_products / energy) * (self._potential is None),
             semidefinite_factor(self._samples.damping * of_products / action),
         ]
         return PolynomialPortHamiltonian(
@@ -147,6 +175,7 @@ class MassMatrices:
             self._samples.state_names,
             self._samples.state_units,
             self.exponents[kept],
+            potential=self._potential,
         )
 
 
@@ -161,8 +190,42 @@ def _kept(exponents: Exponents, even: bool) -> NDArray[np.bool_]:
     return np.asarray(exponents.sum(axis=1) % (2 if even else 1) == 0)
 
 
-def fit_port_hamiltonian(source: SampleSource, degree: int) -> PolynomialPortHamiltonian:
+def potential_of(samples: ConfigurationSamples, scaling: PairScaling) -> Potential:
+    """The polynomial potential whose force is nearest to that at rest, by least squares; each relative."""
+    r, q = len(scaling.q), samples.x_train[:, : len(scaling.q)] / scaling.q
+    exponents = _potential_monomials(r)
+    forces = samples.forces * np.array(scaling.q) / scaling.energy
+    sizes = np.sqrt(np.mean(forces**2, axis=0))
+    triangle = Triangle(len(exponents))
+    step = max(CHUNK // (r * len(exponents)), 1)
+    for first in range(0, len(q), step):
+        part = slice(first, first + step)
+        rows = -gradients(exponents, q[part]) / sizes[:, None]
+        target = forces[part] / sizes
+        triangle.add(np.hstack([rows.reshape(target.size, -1), target.reshape(-1, 1)]))
+    return Potential(exponents, triangle.solve())
+
+
+def gradients(exponents: Exponents, q: Array) -> Array:
+    """(m, r, count) of monomials (count, r) at q (m, r)."""
+    lowered, tensor = differentiate(exponents)
+    return np.asarray(np.einsum("sm,jmi->sji", evaluate_monomials(lowered, q), tensor, optimize=True))
+
+
+def _potential_monomials(pairs: int) -> Exponents:
+    """Those of the highest even degree up to `POTENTIAL_DEGREE` that are at most `POTENTIAL_MONOMIALS`."""
+    degree = POTENTIAL_DEGREE
+    while degree > 4 and math.comb(pairs + degree, degree) > POTENTIAL_MONOMIALS:
+        degree -= 2
+    return monomials_to_degree(pairs, degree)
+
+
+def fit_port_hamiltonian(
+    source: SampleSource, degree: int, potential: bool = False
+) -> PolynomialPortHamiltonian:
     """The polynomial port-Hamiltonian surrogate of total degree ≤ `degree` in M, from the training samples.
+
+    `potential`: with a polynomial potential in the place of K.
 
     By inverse dynamics, or from the mass matrices themselves where the samples have them. Odd powers are
     kept where they make validation better by a factor of `AS_GOOD`. Samples are read twice,
@@ -172,9 +235,9 @@ def fit_port_hamiltonian(source: SampleSource, degree: int) -> PolynomialPortHam
     scaling = pair_scaling(source.scales)
     problem: MassMatrices | InverseDynamics
     if isinstance(source, ConfigurationSamples):
-        problem = MassMatrices(degree, scaling, source)
+        problem = MassMatrices(degree, scaling, source, potential)
     else:
-        problem = InverseDynamics(degree, scaling, source)
+        problem = InverseDynamics(degree, scaling, source, potential)
         for_each_piece(source.training_blocks(), problem.add)
     even, full = (_Candidate(problem.solve(kind)) for kind in (True, False))
     for_each_piece(source.validation_blocks(), even.add, full.add)

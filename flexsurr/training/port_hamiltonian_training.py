@@ -49,7 +49,10 @@ class PortHamiltonianObjective:
             weights = output_weights(y)
         else:
             weights = 1.0 / (count * channel_spread(network.scaling, Scales.of(x, dx)) ** 2)
-        return cls(network, x / network.scaling.states(count), y, np.sqrt(weights / len(x)), forward)
+        x = x / network.scaling.states(count)
+        if network.potential is not None:  # what is left to the springs
+            y[:, network.pairs :] += network.potential.gradient(x[:, : network.pairs])
+        return cls(network, x, y, np.sqrt(weights / len(x)), forward)
 
     @cached_property
     def _floor(self) -> Array:
@@ -79,20 +82,21 @@ class PortHamiltonianObjective:
 
 
 def untrained_port_hamiltonian(
-    dataset: Dataset, hidden: tuple[int, ...], activation: str, seed: int
+    dataset: Dataset, hidden: tuple[int, ...], activation: str, seed: int, potential: bool = False
 ) -> NetworkPortHamiltonian:
     """Random neurons about the mean mass matrix, springs and dampers of a polynomial fit by least squares.
 
-    Whether M is even in q is taken from that fit.
+    Whether M is even in q is taken from that fit, and the `potential` too, which training leaves as it is.
     """
     try:
-        base = fit_port_hamiltonian(dataset, BASE_DEGREE)
+        base = fit_port_hamiltonian(dataset, BASE_DEGREE, potential)
     except NotPositiveDefinite as failure:
         base = failure.surrogate
     r = base.pairs
     even = not np.any(base.exponents.sum(axis=1) % 2)
     q = dataset.x_train[:, :r] / base.scaling.states(2 * r)[:r]
     mean = _positive_definite(np.mean(base.scaled_mass(q), axis=0))
+    springs, rest = (base.scaled_stiffness, None) if base.potential is None else base.potential.split()
     generator = np.random.default_rng(seed)
     (inputs, neurons), _, (entries, _), *_ = NetworkPortHamiltonian.shapes(r, hidden[0], even)
     rows, _ = np.tril_indices(r)
@@ -102,7 +106,7 @@ def untrained_port_hamiltonian(
         generator.uniform(-1.0, 1.0, neurons),
         sizes[:, None] * generator.standard_normal((entries, neurons)),
         pack(np.array(np.linalg.cholesky((1.0 - FLOOR) * mean), dtype=np.float64)),
-        semidefinite_factor(base.scaled_stiffness),
+        semidefinite_factor(springs),
         semidefinite_factor(base.scaled_damping),
     ]
     return NetworkPortHamiltonian(
@@ -114,6 +118,7 @@ def untrained_port_hamiltonian(
         even=even,
         hidden=hidden,
         activation=activation,
+        potential=rest,
     )
 
 

@@ -27,8 +27,10 @@ from flexsurr.surrogates import (
     Intervals,
     NetworkMap,
     PolynomialMap,
+    PortHamiltonian,
 )
 from flexsurr.surrogates.monomials import monomials_to_degree
+from flexsurr.surrogates.potential import Potential
 from flexsurr.surrogates.torch_module import field
 from flexsurr.surrogates.torch_program import program_of
 from flexsurr.training.saved_surrogate import SavedSurrogate
@@ -181,6 +183,16 @@ def _of_features() -> HNN:
     return replace(network(HNN, 2, (6,), "tanh"), scaling=scaling)
 
 
+HEAVY = ("even", "network")
+
+
+def _heavy(surrogate: PortHamiltonian) -> PortHamiltonian:
+    """The same with a potential beside it."""
+    exponents = monomials_to_degree(surrogate.pairs, 4)
+    coefficients = np.random.default_rng(3).normal(size=len(exponents))
+    return replace(surrogate, potential=Potential(exponents, coefficients))
+
+
 def cases() -> dict[str, Case]:
     """Every kind of surrogate and map, by name."""
     basis = _of(WING)
@@ -192,6 +204,7 @@ def cases() -> dict[str, Case]:
     surrogates = {
         **{f"hamiltonian {name}": surrogate for name, surrogate in HAMILTONIANS.items()},
         **{f"port {name}": surrogate for name, surrogate in PORT_HAMILTONIANS.items()},
+        **{f"port {name} with a potential": _heavy(PORT_HAMILTONIANS[name]) for name in HEAVY},
         **{
             f"{name} {of.__name__}": network(of, 2, (6, 5), name) for name in ACTIVATIONS for of in (HNN, MLP)
         },
