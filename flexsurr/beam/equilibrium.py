@@ -140,11 +140,12 @@ class _Balance:
     def _size(self) -> float:
         """A bound of Φᵀ Q: gravity and load as a moment over the length [N m], through the modes."""
         beam = chain(self.space.structure)
-        forces = beam.masses.sum() * np.linalg.norm(beam.gravity)
+        forces = float(beam.masses.sum() * np.linalg.norm(beam.gravity))
         couples = 0.0
         for load in self.load:
-            forces += sum(np.linalg.norm(part) for part in (*load.on_centres, load.on_tip, *load.on_masses))
-            couples += sum(np.linalg.norm(couple) for couple in load.couples)
+            pushes = (*load.on_centres, load.on_tip, *load.on_masses)
+            forces += float(sum(np.linalg.norm(push) for push in pushes))
+            couples += float(sum(np.linalg.norm(couple) for couple in load.couples))
         moments = forces * self.space.structure.length_m + couples
         return float(moments * np.linalg.norm(self.space.modes, 2))
 

@@ -1,5 +1,6 @@
 """What the loads of flexsurr.config.load exert on the chain, and the generalised forces of it all."""
 
+import math
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
@@ -131,7 +132,7 @@ def load_forces(structure: Structure, load: Single) -> Forces:
 
 
 def _unit(direction: Vector) -> Array:
-    return np.array(direction) / np.linalg.norm(direction)
+    return np.asarray(np.array(direction) / math.hypot(*direction))  # however small
 
 
 def _on_elements(structure: Structure, load: DistributedForce | DistributedMoment) -> Array:

@@ -287,7 +287,7 @@ class SeveralLoads(Record):
 Load = Annotated[_EachSingle | Annotated[SeveralLoads, Tag("several")], Discriminator(by_kind)]
 
 
-def loaded_span(load: DistributedForce | DistributedMoment, span_m: float) -> tuple[float, float]:
+def loaded_span(load: _AlongTheSpan, span_m: float) -> tuple[float, float]:
     """Where the load begins and ends [m]; ValueError unless it lies within the span."""
     to_m = span_m if load.to_m is None else load.to_m
     if not 0.0 <= load.from_m < to_m <= span_m:
