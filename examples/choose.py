@@ -13,84 +13,52 @@ from time import perf_counter
 
 import numpy as np
 
-from flexsurr.beam import ModalBasis, natural_modes, reduce, reduced_order, tip_position
+from flexsurr.beam import natural_modes, reduce, reduced_order
 from flexsurr.config.structure_file import read_structure
-from flexsurr.config.study import InitialConditions, Integrator, Reduction
+from flexsurr.config.study import Integrator, Reduction
+from flexsurr.evaluation.choice import Choice
 from flexsurr.simulation import simulate
-
-STABLE = 5.0
-"""Decay rate times step that the explicit method of order 8 bears; rk4 bears 2.8."""
-
-
-def plain(number: float) -> float:
-    """The largest of 1, 2 and 5 times a power of ten that is not above `number`."""
-    power = 10.0 ** math.floor(math.log10(number))
-    return float(f"{max(digit for digit in (1, 2, 5) if digit * power <= number * (1 + 1e-9)) * power:.1g}")
-
-
-def decay_rates(basis: ModalBasis) -> np.ndarray:
-    """(2 r,) rates [1/s] at which free motion about the undeformed shape dies out; 0 without damping."""
-    r = len(basis.omega_rad_s)
-    system = np.block([[np.zeros((r, r)), np.eye(r)], [-basis.stiffness, -basis.damping]])
-    return np.sort(-np.linalg.eigvals(system).real)
 
 
 def main(path: Path, modes: int, q_max_deg: float, simulates: bool) -> None:
     """Print the frequencies, and what follows from them."""
     structure = read_structure(path)
     basis = reduce(structure, Reduction(modes=modes, normalisation="mass"))
-    rates = decay_rates(basis)
-    q_max = math.radians(q_max_deg)
-    at_rest = tip_position(structure, np.zeros(structure.coordinates))
+    choice = Choice(basis, q_max_deg)
     print("mode  rad/s      period s   damping     tip at q_max, of the length   p_max kg m²/s")
-    for k, (omega, norm) in enumerate(zip(basis.omega_rad_s, basis.unit_norms, strict=True)):
-        tip = tip_position(structure, basis.modes[:, k] / norm * q_max) - at_rest
+    for k, omega in enumerate(basis.omega_rad_s):
         damping = basis.damping[k, k] / (2.0 * omega)
         print(
             f"{k + 1:<5} {omega:<10.4g} {2 * math.pi / omega:<11.4g}{damping:<12.3g}"
-            f"{np.linalg.norm(tip) / structure.length_m:<30.3g}{omega * q_max / norm**2:.3g}"
+            f"{choice.reaches[k]:<30.3g}{choice.momenta_kg_m2_s[k]:.3g}"
         )
     full, _ = natural_modes(structure, np.zeros(structure.coordinates))
     print(f"full order: up to {full[-1]:.3g} rad/s")
 
-    slowest, fastest = 2.0 * math.pi / basis.omega_rad_s[[0, -1]]
-    between, step = plain(fastest / 20.0), plain(fastest / 10.0)
-    stiff = rates[-1] * step > STABLE
-    lasting = rates[rates > 1e-9 * basis.omega_rad_s[0]]
-    long = 100.0 * slowest if lasting.size == 0 else min(100.0 * slowest, math.log(100.0) / lasting[0])
+    momentum = choice.p_max_kg_m2_s
     print("\ndataset:")
-    print(f"  duration_s: {round(2.0 * slowest / between) * between:.6g}")
-    print(f"  step_s: {between:g}")
-    # one range for all modes: that of the mode which moves the least mass
-    momentum = plain(float(np.min(basis.omega_rad_s * q_max / basis.unit_norms**2)))
+    print(f"  duration_s: {choice.sampled_s:.6g}")
+    print(f"  step_s: {choice.sample_step_s:g}")
     print(
         f"  initial_conditions: {{q_min_deg: {-q_max_deg}, q_max_deg: {q_max_deg}, "
         f"p_min_kg_m2_s: {-momentum:g}, p_max_kg_m2_s: {momentum:g}}}"
     )
-    chosen = (
-        Integrator(method="radau_iia_5", rtol=1e-7, atol=1e-9)
-        if stiff
-        else Integrator(method="dop853_fixed", step_s=step)
-    )
     print("evaluation:")
-    print(f"  duration_s: {max(round(plain(long) / step), 1) * step:.6g}")
-    print(f"  output_step_s: {step:g}")
-    print(f"  judging_integrator: {chosen.label}")
-    print(f"fastest decay {rates[-1]:.3g} 1/s: {'stiff' if stiff else 'not stiff'}")
+    print(f"  duration_s: {choice.response_s():.6g}")
+    print(f"  output_step_s: {choice.output_step_s:g}")
+    print(f"  judging_integrator: {choice.integrator.label}")
+    print(f"fastest decay {choice.decay_rates[-1]:.3g} 1/s: {'stiff' if choice.stiff else 'not stiff'}")
     if simulates:
-        compare(
-            basis, InitialConditions(q_max_deg=q_max_deg, p_max_kg_m2_s=momentum), fastest, slowest, stiff
-        )
+        compare(choice)
 
 
-def compare(
-    basis: ModalBasis, ranges: InitialConditions, fastest: float, slowest: float, stiff: bool
-) -> None:
+def compare(choice: Choice) -> None:
     """Ten periods from the corner of the ranges, by several integrators, against a tight one."""
+    basis, fastest, slowest, stiff = choice.basis, choice.fastest_s, choice.slowest_s, choice.stiff
     model = reduced_order(basis, "hamiltonian", "compiled")
     r = len(basis.omega_rad_s)
-    q = np.full(r, math.radians(ranges.q_max_deg)) / basis.unit_norms
-    x0 = np.concatenate([q, np.full(r, ranges.p_max_kg_m2_s) * basis.unit_norms])
+    q = np.full(r, math.radians(choice.q_max_deg)) / basis.unit_norms
+    x0 = np.concatenate([q, np.full(r, choice.p_max_kg_m2_s) * basis.unit_norms])
     # no step is longer than from one sample to the next
     t = np.linspace(0.0, 10.0 * slowest, round(10.0 * slowest / fastest * 5.0) + 1)
     tight = Integrator(method="radau_iia_5" if stiff else "dop853", rtol=1e-11, atol=1e-13)

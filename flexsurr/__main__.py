@@ -8,7 +8,16 @@ from pathlib import Path
 from flexsurr import __version__
 
 COMMANDS = Path(__file__).parent / "cli"
-FOR_PEOPLE = ("check", "export", "reference", "surrogate", "simulate-surrogate", "track")
+FOR_PEOPLE = (
+    "animate",
+    "check",
+    "export",
+    "new-study",
+    "reference",
+    "simulate-surrogate",
+    "surrogate",
+    "track",
+)
 EXIT_CODES = """exit codes
   0    done
   1    it cannot be done: one line says why (a traceback is a mistake of ours: please report it)

@@ -8,8 +8,8 @@ response.plot("response.png")
 """
 
 import warnings
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,9 +17,9 @@ import numpy as np
 import pandas as pd
 from pydantic import TypeAdapter
 
-from flexsurr.beam import find_equilibrium, loaded
+from flexsurr.beam import find_equilibrium, loaded, reduced_order
 from flexsurr.config.load import Load
-from flexsurr.config.study import Integrator
+from flexsurr.config.study import Integrator, Variant
 from flexsurr.simulation import Trajectory, simulate
 from flexsurr.simulation.rhs import Array, Model
 from flexsurr.surrogates import Hamiltonian, compiled
@@ -42,8 +42,9 @@ class Response:
     """A simulation of a surrogate, as far as it came.
 
     `tip` (m, 3) [m] is the position of the tip in the clamp's frame before it is turned, `twist` (m,) [rad]
-    that of the tip against the clamp; both are None for data that came from no structure. `energy` (m,) [J]
-    is the surrogate's own, without the work of the load, or None where it has none.
+    that of the tip against the clamp, `nodes` (m, N + 1, 3) [m] are the ends of the elements from the clamp
+    on; all are None for data that came from no structure. `energy` (m,) [J] is the model's own, without the
+    work of the load, or None where it has none.
     """
 
     name: str
@@ -51,6 +52,11 @@ class Response:
     tip: Array | None
     twist: Array | None
     energy: Array | None
+    nodes: Array | None = None
+
+    def called(self, name: str) -> "Response":
+        """The same under another name, which tables and figures show."""
+        return replace(self, name=name)
 
     @property
     def t(self) -> Array:
@@ -145,28 +151,59 @@ class LoadedSurrogate:
         its response: see `trajectory.completed` and `trajectory.reason`. Raises ValueError for a state
         that there is not, and for a load that the structure cannot feel.
         """
-        if not (duration_s > 0.0 and step_s > 0.0):
-            raise ValueError(
-                f"duration_s, step_s: {duration_s}, {step_s} are not allowed; allowed: more than 0"
-            )
-        t = np.linspace(0.0, duration_s, max(round(duration_s / step_s), 1) + 1)
-        trajectory = simulate(self._under(load), t, self._state(initial), integrator)
-        x = trajectory.x
-        left = self.saved.outside(x)
+        surrogate = self.saved.surrogate
+        energy = surrogate.energy if isinstance(surrogate, Hamiltonian) else None
+        times = _times(duration_s, step_s)
+        response = self._response(self._model, self.saved.run_id, energy, times, initial, load, integrator)
+        left = self.saved.outside(response.x)
         if left:
             warnings.warn(left, OutOfRange, stacklevel=2)
-        surrogate = self.saved.surrogate
-        energy = surrogate.energy(x) if isinstance(surrogate, Hamiltonian) else None
-        return Response(self.saved.run_id, trajectory, self.saved.tip(x), self.saved.twist(x), energy)
+        return response
 
-    def _under(self, load: Load | Mapping[str, Any] | None) -> Model:
+    def reference(
+        self,
+        *,
+        duration_s: float,
+        initial: Mapping[str, float] | Sequence[float] | Array | None = None,
+        load: Load | Mapping[str, Any] | None = None,
+        step_s: float = 0.01,
+        integrator: Integrator = ANY_STIFFNESS,
+    ) -> Response:
+        """The response of the reduced-order model that the surrogate stands for, as `simulate` has it.
+
+        Raises ValueError where it stands for none, too.
+        """
+        basis = self.saved.basis
+        if basis is None:
+            raise ValueError(f"reference: {self.saved.run_id} stands for no structure")
+        variant: Variant = "as_printed" if self.saved.variant == "as_printed" else "hamiltonian"
+        model = reduced_order(basis, variant, "compiled")
+        times = _times(duration_s, step_s)
+        return self._response(model, "reduced order", model.energy, times, initial, load, integrator)
+
+    def _response(
+        self,
+        model: Model,
+        name: str,
+        energy: Callable[[Array], Array] | None,
+        t: Array,
+        initial: Mapping[str, float] | Sequence[float] | Array | None,
+        load: Load | Mapping[str, Any] | None,
+        integrator: Integrator,
+    ) -> Response:
+        trajectory = simulate(self._under(model, load), t, self._state(initial), integrator)
+        x, saved = trajectory.x, self.saved
+        own = None if energy is None else energy(x)
+        return Response(name, trajectory, saved.tip(x), saved.twist(x), own, saved.nodes(x))
+
+    def _under(self, model: Model, load: Load | Mapping[str, Any] | None) -> Model:
         if load is None:
-            return self._model
+            return model
         if self.saved.basis is None:
             raise ValueError(f"load: {self.saved.run_id} stands for no structure that could feel one")
         checked: Load = TypeAdapter(Load).validate_python(load)
         checked.check(self.saved.basis.structure)
-        return loaded(self._model, self.saved.basis, checked.with_tables(Path()), "compiled")
+        return loaded(model, self.saved.basis, checked.with_tables(Path()), "compiled")
 
     def _state(self, initial: Mapping[str, float] | Sequence[float] | Array | None) -> Array:
         d = len(self.state_names)
@@ -185,6 +222,30 @@ class LoadedSurrogate:
                 raise ValueError(f"initial: {name!r} is no state; allowed: {', '.join(self.state_names)}")
             state[self.state_names.index(name)] = value
         return state
+
+
+def _times(duration_s: float, step_s: float) -> Array:
+    """0, step, …, duration [s]. ValueError unless both are more than 0."""
+    if not (duration_s > 0.0 and step_s > 0.0):
+        raise ValueError(f"duration_s, step_s: {duration_s}, {step_s} are not allowed; allowed: more than 0")
+    return np.linspace(0.0, duration_s, max(round(duration_s / step_s), 1) + 1)
+
+
+def animate(responses: Sequence[Response], path: str | Path, title: str = "") -> None:
+    """Write the responses side by side, moving, to `path`: a .gif, or a .html that needs no network.
+
+    The first, the reference, stands grey behind each of the others. All have the same times. Raises
+    ValueError for responses that came from no structure, and for another ending.
+    """
+    from flexsurr.report.animation import save_animation  # here, for matplotlib takes a second
+
+    motions: dict[str, Array] = {}
+    for response in responses:
+        if response.nodes is None:
+            raise ValueError(f"{response.name} stands for no structure that could be seen to move")
+        motions[response.name] = response.nodes
+    longest = max((response.t for response in responses), key=len, default=np.zeros(0))
+    save_animation(motions, longest, title, Path(path))
 
 
 def load_surrogate(path: str | Path) -> LoadedSurrogate:

@@ -25,7 +25,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--initial",
-        type=_state,
+        type=state,
         nargs="+",
         default=[],
         metavar="STATE=VALUE",
@@ -73,7 +73,8 @@ def main(
         raise ArithmeticError(f"{response.trajectory.reason} at {response.trajectory.end_time_s:g} s")
 
 
-def _state(text: str) -> tuple[str, float]:
+def state(text: str) -> tuple[str, float]:
+    """The name and the value in STATE=VALUE."""
     name, _, value = text.partition("=")
     return name, float(value)
 

@@ -93,6 +93,8 @@ FIGURES: dict[str, Product] = {
     "figure_13": Product("Total energy", ("energy-*",), cantilever),
     "figure_14": Product("Free response", ("response-*-free",), wing),
     "figure_15": Product("Response to lift and drag", ("response-*-sustained",), wing),
+    "mode_shapes": Product("Mode shapes", ("shapes",)),
+    "static_shapes": Product("Shapes under static loads", ("shapes",), lifts),
     "static_deflection": Product("Static deflection, and its errors", ("statics",), lifts),
     "reduced_against_full": Product("Reduced against full order", ("validation",), lifts),
     "free_response_of_every_model": Product("Free response of every model", ("structure", "response-*-free")),

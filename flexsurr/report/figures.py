@@ -26,6 +26,7 @@ from flexsurr.report.kinematic_figures import figure_03, figure_04
 from flexsurr.report.response_figures import figure_10, figure_12, figure_14, figure_15
 from flexsurr.report.rollout_figures import phase_plane, rollouts
 from flexsurr.report.schematics import figure_05, figure_06, figure_07, figure_11
+from flexsurr.report.shape_figures import mode_shapes, static_shapes
 from flexsurr.report.training_figures import training_epochs, training_loss
 from flexsurr.report.trial_figures import trials
 
@@ -45,6 +46,8 @@ DRAW: dict[str, Callable[..., Figure]] = {
         figure_13,
         figure_14,
         figure_15,
+        mode_shapes,
+        static_shapes,
         static_deflection,
         reduced_against_full,
         free_response_of_every_model,

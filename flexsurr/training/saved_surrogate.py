@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from flexsurr.beam import ModalBasis, tip_position, tip_twist
+from flexsurr.beam import ModalBasis, node_positions, tip_position, tip_twist
 from flexsurr.config.structure import BEFORE, Structure
 from flexsurr.simulation.rhs import Array
 from flexsurr.surrogates import Surrogate
@@ -55,6 +55,12 @@ class SavedSurrogate:
     def twist(self, x: Array) -> Array | None:
         """(m,) twist of the tip against the clamp [rad] at states x (m, 2r)."""
         return None if self.basis is None else tip_twist(self.basis.structure, self._joints(self.basis, x))
+
+    def nodes(self, x: Array) -> Array | None:
+        """(m, N + 1, 3) ends of the elements [m], the clamp first, at states x (m, 2r)."""
+        return (
+            None if self.basis is None else node_positions(self.basis.structure, self._joints(self.basis, x))
+        )
 
     @staticmethod
     def _joints(basis: ModalBasis, x: Array) -> Array:

@@ -1,8 +1,12 @@
 """The jobs of a study whose trajectories are simulated."""
 
+from collections.abc import Mapping, Sequence
+
+from flexsurr.config.errors import ConfigurationError
 from flexsurr.config.part import values_of
 from flexsurr.config.sources import ResolvedStudy
 from flexsurr.config.study import DEFAULT, Study
+from flexsurr.config.trial import Trial
 from flexsurr.report.catalogue import Product
 from flexsurr.workflow.study_plan import FieldPlan, Job, data_folder, digest, trials_of
 
@@ -51,6 +55,13 @@ EVALUATION = (
     "evaluation.reference_integrator",
 )
 RESPONSES = (*EVALUATION, "evaluation.drawing_integrator", "evaluation.energy_integrator")
+WATCH = (
+    "seed",
+    "reduction",
+    "dataset.initial_conditions",
+    "evaluation.simulations",
+    "evaluation.duration_s",
+)
 LEARNED_LOAD = (
     "reduction",
     "evaluation.load",
@@ -74,7 +85,10 @@ class TrajectoryPlan(FieldPlan):
 
     def __init__(self, resolved: ResolvedStudy) -> None:
         study = resolved.study
-        super().__init__(resolved.name, trials_of(resolved.sweeps, study.sweeps, resolved.own_networks))
+        trials = trials_of(resolved.sweeps, study.sweeps, resolved.own_networks)
+        if resolved.structure.gravity_m_s2 > 0.0:
+            _check_potentials(study, trials)
+        super().__init__(resolved.name, trials)
         self.resolved, self.variants = resolved, study.variants
 
     def dataset_of(self, sweep: str) -> str:
@@ -135,6 +149,10 @@ class TrajectoryPlan(FieldPlan):
         """Responses and energies of the selected surrogates."""
         return {**self._part(RESPONSES), "variant": variant}
 
+    def watch(self, variant: str) -> Job:
+        """The free response of the selected surrogates, moving."""
+        return {**self._part(WATCH), "study": self.name, "variant": variant}
+
     def cost(self, variant: str, response: str) -> Job:
         """Wall times and errors of everything, under one response."""
         return {**self._part(COST), "study": self.name, "variant": variant, "response": response}
@@ -150,7 +168,10 @@ class TrajectoryPlan(FieldPlan):
     @property
     def evaluation(self) -> dict[str, list[str]]:
         """The names of the files that its evaluation makes, by the rule that makes them."""
-        made: dict[str, list[str]] = {"statics": ["statics", "frequencies"], "validation": ["validation"]}
+        made: dict[str, list[str]] = {
+            "statics": ["statics", "frequencies", "shapes"],
+            "validation": ["validation"],
+        }
         made |= {"responses": [], "learn_load": [], "evaluate": []}
         for variant in self.variants:
             made["responses"] += [f"response-{variant}-{response}" for response in DRAWN_RESPONSES]
@@ -186,6 +207,22 @@ class TrajectoryPlan(FieldPlan):
         study = self.resolved.study
         dataset = study.datasets[data.partition("-")[2] or DEFAULT]
         return study.model_copy(update={"dataset": dataset, "seed": study.seed_of(dataset)})
+
+
+def _check_potentials(study: Study, trials: Mapping[str, Sequence[Trial]]) -> None:
+    """ConfigurationError, by its sweep's file, for a trial that knows no weight; the structure has one."""
+    problems = [
+        f"{study.sweeps[name]}: potential: none is not allowed for port_hamiltonian under gravity "
+        f"(gravity_m_s2 in {study.structure}), which ½ qᵀKq does not know; allowed: [polynomial]"
+        for name, of_sweep in trials.items()
+        if any(trial.architecture == "port_hamiltonian" and _quadratic(trial) for trial in of_sweep)
+    ]
+    if problems:
+        raise ConfigurationError(dict.fromkeys(problems))
+
+
+def _quadratic(trial: Trial) -> bool:
+    return getattr(trial, "potential", None) is None
 
 
 def _variant(data: str) -> str:

@@ -12,7 +12,7 @@ import pytest
 TOP = Path(__file__).parents[2]
 TUTORIAL = (TOP / "docs" / "tutorial.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```", TUTORIAL, re.MULTILINE | re.DOTALL)
-MADE = ("strip.csv", "strip.png", "shaken.png")
+MADE = ("strip.csv", "strip.png", "shaken.png", "gust.gif")
 
 
 @pytest.fixture(scope="module")

@@ -58,7 +58,8 @@ class Results:
 
     def statics(self) -> None:
         folder = self.root / "evaluation" / STUDY
-        statics.main(self.job("statics", STUDY), folder / "statics.parquet", folder / "frequencies.parquet")
+        files = (folder / f"{name}.parquet" for name in ("statics", "frequencies", "shapes"))
+        statics.main(self.job("statics", STUDY), *files)
 
     def tabulate(self, table: str) -> None:
         caption = REPOSITORY / "workflow/report" / f"{table}.rst"

@@ -13,7 +13,7 @@ from flexsurr.workflow.job_files import write_job
 BUCKLES = {"clamp_theta_deg": 90.0, "gravity_m_s2": 9.81, "bending_stiffness_out_of_plane_N_m2": 0.05}
 FILES = {
     "simulate": ["output"],
-    "statics": ["statics", "frequencies"],
+    "statics": ["statics", "frequencies", "shapes"],
     "validate": ["output"],
     "learn_load": ["manifest", "polynomial", "network", "errors"],
 }

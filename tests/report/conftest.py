@@ -41,6 +41,29 @@ def statics() -> pd.DataFrame:
 
 
 @pytest.fixture
+def shapes() -> pd.DataFrame:
+    s = np.linspace(0.0, 1.0, 11)
+    frames = []
+
+    def add(kind: str, number: int, line: str, y: float, z: np.ndarray, **columns: object) -> None:
+        points = {"x_m": s, "y_m": y, "z_m": z}
+        frames.append(
+            pd.DataFrame(
+                {"kind": kind, "number": number, "line": line, "node": range(11), **points, **columns}
+            )
+        )
+
+    for line, y in (("left", 0.05), ("axis", 0.0), ("right", -0.05)):
+        add("rest", 0, line, y, 0.0 * s, model="rom")
+        for mode in (1, 2, 3, 4):
+            add("mode", mode, line, y, 0.2 * np.sin(mode * s) * (1 + y), model="rom", omega_rad_s=10.0 * mode)
+    for number, load_N in enumerate((0.0, 50.0, 150.0)):
+        for model in ("fom", "rom"):
+            add("static", number, "axis", 0.0, 2e-3 * load_N * s**2, model=model, load_N=load_N)
+    return pd.concat(frames, ignore_index=True)
+
+
+@pytest.fixture
 def validation() -> pd.DataFrame:
     t = np.linspace(0.0, 1.0, 201)
     frames = []

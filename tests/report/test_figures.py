@@ -17,6 +17,7 @@ from flexsurr.report.style import save
 FIXTURES = {
     "structure": "structure",
     "statics": "statics",
+    "shapes": "shapes",
     "validation": "validation",
     "response-*-free": "free",
     "response-*-forced": "forced",

@@ -66,7 +66,7 @@ LEARNT = {
             QUICK,
             f"{OVER}.statics.tip_loads_N",
             [0, 10],
-            {"statics": 1, **products_of("statics", "frequencies")},
+            {"statics": 1, **products_of("statics", "frequencies", "shapes")},
         ),
         (
             "config/sweeps/airliner_quick.yaml",

@@ -107,6 +107,7 @@ rule statics:
     output:
         statics=f"{RESULTS}/evaluation/{{study}}/statics.parquet",
         frequencies=f"{RESULTS}/evaluation/{{study}}/frequencies.parquet",
+        shapes=f"{RESULTS}/evaluation/{{study}}/shapes.parquet",
     log:
         f"{RESULTS}/logs/statics/{{study}}.log",
     benchmark:
@@ -119,10 +120,11 @@ rule statics:
         job=job("statics", "study"),
         code=code("statics"),
     message:
-        "static deflection and natural frequencies of {wildcards.study}"
+        "static deflection, frequencies and shapes of {wildcards.study}"
     shell:
         "python -m flexsurr statics --job {params.job:q}"
-        " --statics {output.statics:q} --frequencies {output.frequencies:q} > {log:q} 2>&1"
+        " --statics {output.statics:q} --frequencies {output.frequencies:q} --shapes {output.shapes:q}"
+        " > {log:q} 2>&1"
 
 
 rule validation:

@@ -138,3 +138,30 @@ rule rollout_cost:
     shell:
         "python -m flexsurr rollout-cost --job {params.job:q} --selection {input.selection:q}"
         " --runs {params.runs:q} --manifest {input.manifest:q} --output {output:q} > {log:q} 2>&1"
+
+
+# No figure of the report: ask for the file, snakemake results/animations/<study>-<variant>.gif (or .html).
+rule watch:
+    input:
+        selection=f"{RESULTS}/selected/{{study}}.json",
+    output:
+        f"{RESULTS}/animations/{{study}}-{{variant}}.{{ending}}",
+    log:
+        f"{RESULTS}/logs/watch/{{study}}-{{variant}}-{{ending}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/watch/{{study}}-{{variant}}-{{ending}}.tsv"
+    wildcard_constraints:
+        ending="gif|html",
+    threads: 1
+    resources:
+        mem_mb=2000,
+        runtime=30,
+    params:
+        job=job("watch", "study", "variant"),
+        code=code("watch"),
+        runs=f"{RESULTS}/runs",
+    message:
+        "animating {wildcards.study}, {wildcards.variant}"
+    shell:
+        "python -m flexsurr watch --job {params.job:q} --selection {input.selection:q}"
+        " --runs {params.runs:q} --output {output:q} > {log:q} 2>&1"

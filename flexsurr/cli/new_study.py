@@ -1,0 +1,183 @@
+"""Begin a study of a beam of your own: write its structure, sweep and study, with comments, ready to run."""
+
+import argparse
+import re
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from flexsurr.beam import EquilibriumNotFound
+from flexsurr.cli.command import personal
+from flexsurr.config.section import MATERIALS, Material, rectangle
+from flexsurr.config.structure import JOINTS, Joint, Structure
+from flexsurr.evaluation.new_study import damping_s, study_files
+from flexsurr.storage import replacing
+
+KEYS = {
+    "length": "length_m",
+    "mass": "mass_per_length_kg_m",
+    "bending": "bending_stiffness_out_of_plane_N_m2",
+    "in_plane": "bending_stiffness_in_plane_N_m2",
+    "torsion": "torsional_stiffness_N_m2",
+    "axial": "axial_stiffness_N",
+    "inertia": "torsional_inertia_per_length_kg_m",
+    "gravity": "gravity_m_s2",
+    "elements": "elements",
+    "joints": "joints",
+}
+"""The key of a structure that an option gives."""
+
+JOINT_OF: dict[str, Joint] = {
+    "bending": "out_of_plane",
+    "in_plane": "in_plane",
+    "torsion": "torsion",
+    "axial": "axial",
+}
+"""The joint that an option's stiffness is of."""
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """What the beam is."""
+    parser.add_argument("name", help="of the study and of its files: letters, digits, hyphens, underscores")
+    parser.add_argument("--length", type=float, required=True, metavar="M", help="span [m]")
+    by_values = parser.add_argument_group("the section by its values")
+    for option, unit, text in (
+        ("mass", "KG_M", "mass per span [kg/m]"),
+        ("bending", "N_M2", "EI of bending that lifts the tip [N m²]"),
+        ("in-plane", "N_M2", "EI of bending to the side [N m²]"),
+        ("torsion", "N_M2", "GJ [N m²]; needs --inertia"),
+        ("inertia", "KG_M", "mass moment of inertia per span about the span [kg m]"),
+        ("axial", "N", "EA [N]"),
+    ):
+        by_values.add_argument(f"--{option}", type=float, metavar=unit, help=text)
+    by_shape = parser.add_argument_group("or by its shape, a solid rectangle")
+    by_shape.add_argument("--width", type=float, metavar="M", help="to the side [m]")
+    by_shape.add_argument("--height", type=float, metavar="M", help="upwards [m]")
+    by_shape.add_argument("--material", choices=sorted(MATERIALS), help="with the values of the standards")
+    by_shape.add_argument("--young", type=float, metavar="PA", help="or E [Pa]")
+    by_shape.add_argument("--poisson", type=float, default=0.3, help="ν, by default 0.3")
+    by_shape.add_argument("--density", type=float, metavar="KG_M3", help="with E: mass per volume [kg/m³]")
+    parser.add_argument(
+        "--joints",
+        type=lambda text: text.split(","),
+        metavar="KIND,…",
+        help=f"{', '.join(JOINTS)}; by default those whose stiffness is given, of a rectangle out_of_plane",
+    )
+    parser.add_argument(
+        "--damping", type=float, default=0.0, metavar="RATIO", help="of the first mode, such as 0.02"
+    )
+    parser.add_argument(
+        "--gravity", type=float, default=0.0, metavar="M_S2", help="downwards [m/s²], such as 9.80665"
+    )
+    parser.add_argument("--elements", type=int, default=10, help="by default 10")
+    parser.add_argument(
+        "--modes", type=int, help="that are kept, by default 1, or 3 where joints are several"
+    )
+    parser.add_argument(
+        "--directory", type=Path, default=Path(), help="that holds the Snakefile; by default this one"
+    )
+
+
+def main(name: str, directory: Path, modes: int | None, damping: float, **given: Any) -> None:
+    """Write the files, and say how to go on. ValueError for what makes no beam, or exists already."""
+    if not re.fullmatch(r"[A-Za-z][\w-]*", name, re.ASCII):
+        raise ValueError(
+            f"{name!r} is no name; allowed: a letter, then letters, digits, hyphens, underscores"
+        )
+    if not (directory / "config" / "config.yaml").is_file():
+        raise ValueError(
+            f"{directory}: has no config/config.yaml; allowed: the folder that holds the Snakefile"
+        )
+    structure = _structure(name, given, damping)
+    kept = modes if modes is not None else min(1 if len(structure.joints) == 1 else 3, structure.coordinates)
+    if not 1 <= kept <= structure.coordinates:
+        raise ValueError(f"--modes: {kept} is not allowed; allowed: 1 to {structure.coordinates}")
+    files = study_files(structure, kept)
+    for path in files:
+        if (directory / path).exists():
+            raise ValueError(f"{path}: exists already, and nothing is overwritten; allowed: another name")
+    for path, text in files.items():
+        (directory / path).parent.mkdir(parents=True, exist_ok=True)
+        with replacing(directory / path) as beside:
+            beside.write_text(text, encoding="utf-8")
+    print("\n".join(files))
+    print(f"\nflexsurr check --configfile {name}.yaml")
+    run = f"snakemake --cores 2 --configfile {name}.yaml"
+    print(f"{run} -- results-{name}/selected/{name}.json  # the surrogates")
+    print(f"{run}  # and all tables and figures")
+    print(f"{run} --report results-{name}/report.html  # on one page")
+
+
+def _structure(name: str, given: dict[str, Any], damping: float) -> Structure:
+    """The beam that the options describe."""
+    section = _rectangle(given)
+    values = section | {
+        KEYS[option]: value for option, value in given.items() if option in KEYS and value is not None
+    }
+    if "mass_per_length_kg_m" not in values:
+        raise ValueError("--mass: missing; allowed: more than 0, or else --width, --height and --material")
+    if given["joints"] is None:
+        values["joints"] = [joint for option, joint in JOINT_OF.items() if given[option] is not None]
+        if section and not values["joints"]:
+            values["joints"] = ["out_of_plane"]
+        if not values["joints"]:
+            raise ValueError(
+                "--bending: missing; allowed: more than 0, or --in-plane, --torsion, --axial, or a rectangle"
+            )
+    if not 0.0 <= damping < 1.0:
+        raise ValueError(f"--damping: {damping:g} is not allowed; allowed: 0 or more, less than 1")
+    try:
+        structure = Structure.model_validate({"name": name, **values})
+    except ValidationError as error:
+        raise ValueError(_in_options(error)) from None
+    if damping == 0.0:
+        return structure
+    beta = float(f"{damping_s(structure, damping):.4g}")
+    return structure.model_copy(update={f"damping_{joint}_s": beta for joint in structure.joints})
+
+
+def _rectangle(given: dict[str, Any]) -> dict[str, float]:
+    """The section by its shape, if that is given."""
+    if given["width"] is None and given["height"] is None:
+        for option in ("material", "young", "density"):
+            if given[option] is not None:
+                raise ValueError(f"--{option}: needs --width and --height")
+        return {}
+    for option in ("width", "height"):
+        if given[option] is None or not given[option] > 0.0:
+            raise ValueError(f"--{option}: {given[option]} is not allowed; allowed: more than 0")
+    for option in ("mass", "bending", "in_plane", "torsion", "axial", "inertia"):
+        if given[option] is not None:
+            raise ValueError(f"--{option.replace('_', '-')}: follows from the shape; allowed: one of the two")
+    if given["material"] is not None:
+        return rectangle(given["width"], given["height"], MATERIALS[given["material"]])
+    for option in ("young", "density"):
+        if given[option] is None or not given[option] > 0.0:
+            raise ValueError(
+                f"--{option}: {given[option]} is not allowed; allowed: more than 0, or --material"
+            )
+    if not -1.0 < given["poisson"] <= 0.5:
+        raise ValueError(
+            f"--poisson: {given['poisson']:g} is not allowed; allowed: more than -1, at most 0.5"
+        )
+    material = Material(given["young"], given["poisson"], given["density"])
+    return rectangle(given["width"], given["height"], material)
+
+
+def _in_options(error: ValidationError) -> str:
+    """What is wrong with the first value, in the words of the command line."""
+    problem = error.errors()[0]
+    options = {key: f"--{option.replace('_', '-')}" for option, key in KEYS.items()}
+    if problem["type"] == "value_error":
+        text = problem["msg"].removeprefix("Value error, ")
+        for key, option in options.items():
+            text = text.replace(key, option)
+        return text
+    option = options[str(problem["loc"][0])]
+    allowed = problem["msg"].removeprefix("Input should be ")
+    return f"{option}: {problem['input']} is not allowed; allowed: {allowed}"
+
+
+if __name__ == "__main__":
+    personal(main, arguments, expected=(ValueError, EquilibriumNotFound))
