@@ -157,7 +157,7 @@ def concat(values: Sequence[Any]) -> Value:
 def matmul(a: Any, b: Any) -> Value:
     """The product of matrices or vectors, of one or two axes each."""
     first, second = value(a), value(b)
-    shape = (np.empty(first.shape) @ np.empty(second.shape)).shape
+    shape = (np.zeros(first.shape) @ np.zeros(second.shape)).shape  # what is not written may overflow
     inner = first.shape[-1]
     return Value("matmul", (first, second), shape, (first.size // inner, inner, second.size // inner))
 
