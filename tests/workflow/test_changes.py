@@ -144,7 +144,7 @@ def test_a_sweep_of_which_no_trial_finishes_ends_with_tables_that_say_so(copy_of
         (
             "flexsurr/evaluation/timing.py",
             {"evaluate", "join"},
-            {"shards", "manifest", "trials", "statics"},
+            {"shards", "manifest", "statics"},
         ),
         (
             "flexsurr/storage/moments.py",
