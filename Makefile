@@ -19,7 +19,7 @@ help:
 	@echo "make reproduce-full  every baseline timed on every simulation: hours, results-full/report.html"
 	@echo "make report       results/report.html anew, of what is there"
 	@echo "make ui           the page on which runs are compared, on this machine only   (PORT=5000)"
-	@echo "make benchmark    speed, as ratios"
+	@echo "make benchmark    speed, as ratios, in results/tables/benchmarks.csv"
 	@echo
 	@echo "while editing"
 	@echo "make check        format, findings of linters, types, floors"
@@ -103,9 +103,7 @@ ui: $(INSTALLED)
 	mlflow ui --backend-store-uri "sqlite:///$(CURDIR)/results/mlflow/mlflow.db" --host 127.0.0.1 --port $(PORT)
 
 benchmark: $(INSTALLED)
-	@for script in $$(grep -l __main__ benchmarks/*.py); do \
-		echo "== $$script"; OMP_NUM_THREADS=1 python $$script || exit 1; \
-	done
+	python benchmarks/run.py
 
 # Tests look at the pages in a real browser. Debian's is fetched where there is none and we may.
 browser:

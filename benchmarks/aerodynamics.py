@@ -48,9 +48,9 @@ def random_network(low: np.ndarray, high: np.ndarray) -> NetworkMap:
     return NetworkMap(inputs, outputs, HIDDEN, "tanh", weights)
 
 
-def show(name: str, timing: Timing, calls: int, reference_s: float) -> None:
-    microseconds = 1e6 * timing.median_s / calls
-    relative = 100.0 * timing.median_s / calls / reference_s
+def show(name: str, timing: Timing, reference_s: float) -> None:
+    microseconds = 1e6 * timing.median_s
+    relative = 100.0 * timing.median_s / reference_s
     print(f"{name:<32} {microseconds:>10.2f} µs {relative:>10.4f} %")
 
 
@@ -71,23 +71,30 @@ def main() -> None:
     }
     u = draw_features(low, high, seed=0, first=0, count=COMPILED_CALLS)
     calls = {name: CALLS.get(name, COMPILED_CALLS) for name in forms}
-    timings = compare({name: caller(form, u, calls[name]) for name, form in forms.items()})
+    callers = {name: caller(form, u, calls[name]) for name, form in forms.items()}
+    timings = compare("aerodynamics of the airliner", callers, counts=calls)
     reference_s = timings["rebuilt"].median_s
     print(f"{len(airframe.lattice)} panels; one evaluation, of the rebuilt lattice")
     for name, timing in timings.items():
-        show(name, timing, calls[name], reference_s)
+        show(name, timing, reference_s)
     in_torch = TorchMap(network)
     python = {
         "network, NumPy": lambda: [network(u[0]) for _ in range(PYTHON_CALLS)],
         "network, torch": lambda: [in_torch(u[0]) for _ in range(PYTHON_CALLS)],
     }
-    for name, timing in compare(python).items():
-        show(name, timing, PYTHON_CALLS, reference_s)
+    for name, timing in compare("aerodynamics from Python", python, counts=PYTHON_CALLS).items():
+        show(name, timing, reference_s)
     generator = np.random.default_rng(0)
     x = generator.uniform(-1.0, 1.0, (SAMPLES, len(FEATURES)))
     y = generator.uniform(-1.0, 1.0, (SAMPLES, len(COEFFICIENTS)))
     objective = MapObjective.of(x, y, HIDDEN, "tanh")
-    timing = measure(lambda: objective.normal_equations(network.parameters), repeats=5, warmup=1)
+    timing = measure(
+        "training of the airliner",
+        "normal equations",
+        lambda: objective.normal_equations(network.parameters),
+        repeats=5,
+        warmup=1,
+    )
     print(f"\nnormal equations of {network.parameter_count} weights at {SAMPLES} samples: {timing}")
 
 

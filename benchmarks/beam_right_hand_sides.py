@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import yaml
 from numba import njit
-from timing import Timing, measure
+from timing import compare
 
 from flexsurr.beam import full_order, loaded, reduce, reduced_order
 from flexsurr.config.history import Sine
@@ -22,7 +22,7 @@ from flexsurr.simulation import rhs
 CANTILEVER = Path(__file__).parents[1] / "config/structures/cantilever.yaml"
 COMPILED_CALLS = 2000
 LOAD = TipForce(force_N=10.0, history=Sine(frequency_rad_s=50.0))
-DESCRIBED, NUMPY, COMPILED = KINDS = ("described", "numpy", "compiled")
+COMPILED, NUMPY, DESCRIBED = KINDS = ("compiled", "numpy", "described")
 
 
 @njit(error_model="numpy")
@@ -33,26 +33,20 @@ def call_repeatedly(kernel, t, x, dx, work, count):
         x[0] += 1e-15 * dx[0]
 
 
-def seconds_a_call(model, kind: str, repeats: int) -> tuple[float, float]:
-    """Median and spread."""
+def caller(model, kind: str) -> Callable[[], object]:
     half = len(model.state_names) // 2
     x = np.concatenate([np.full(half, 0.3 / half), np.full(half, 0.5 / half)])
-    if kind == COMPILED:
-        dx, work = np.empty_like(x), np.empty(model.work_size)
-        found: Timing = measure(
-            lambda: call_repeatedly(model.kernel, 1.0, x, dx, work, COMPILED_CALLS), 10 * repeats
-        )
-        return found.median_s / COMPILED_CALLS, found.spread_s / COMPILED_CALLS
-    found = measure(lambda: model.derivative(1.0, x), repeats if kind == DESCRIBED else 10 * repeats)
-    return found.median_s, found.spread_s
+    if kind != COMPILED:
+        return lambda: model.derivative(1.0, x)
+    dx, work = np.empty_like(x), np.empty(model.work_size)
+    return lambda: call_repeatedly(model.kernel, 1.0, x, dx, work, COMPILED_CALLS)
 
 
 def show(name: str, make: Callable[[str], object], repeats: int) -> None:
-    medians, columns = {}, []
-    for kind in KINDS:
-        medians[kind], spread = seconds_a_call(make(kind), kind, repeats)
-        columns.append(f"{1e6 * medians[kind]:>11.4g} ± {1e6 * spread:<7.1g}")
-    ratios = [f"{medians[slow] / medians[COMPILED]:>10,.0f}" for slow in (DESCRIBED, NUMPY)]
+    callers = {kind: caller(make(kind), kind) for kind in KINDS}
+    timings = compare(f"right-hand side, {name}", callers, repeats, counts={COMPILED: COMPILED_CALLS})
+    columns = [f"{1e6 * t.median_s:>11.4g} ± {1e6 * t.spread_s:<7.1g}" for t in timings.values()]
+    ratios = [f"{timings[slow].ratio:>10,.0f}" for slow in (DESCRIBED, NUMPY)]
     print(f"{name:<44}", *columns, *ratios, flush=True)
 
 

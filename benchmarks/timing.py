@@ -1,20 +1,33 @@
-"""How everything here is timed: warmed up, repeated, reported as a median with its spread."""
+"""How everything here is timed: warmed up, repeated in turns, reported as a median with its spread.
 
+Where the environment names a file in `ROWS`, each timing is added to it as a row (`benchmarks/run.py`).
+"""
+
+import csv
+import math
+import os
 import statistics
+import sys
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass, fields
+from pathlib import Path
+
+ROWS = "FLEXSURR_BENCHMARK_ROWS"
 
 
 @dataclass(frozen=True)
 class Timing:
-    """Wall seconds of one call, over repeats."""
+    """Wall seconds of one call, over repeats, and the ratio to what was timed in turns with it."""
 
     median_s: float
     lowest_s: float
     spread_s: float
     """Half the distance between the quartiles: other work on the machine hardly moves it."""
     repeats: int
+    ratio: float
+    """Median of the ratios to the first call of the same turn: a slow spell of the machine meets both."""
+    ratio_spread: float
 
     def __str__(self) -> str:
         scale, unit = next(
@@ -23,23 +36,61 @@ class Timing:
         return f"{self.median_s * scale:.3g} ± {self.spread_s * scale:.1g} {unit}"
 
 
-def measure(call: Callable[[], object], repeats: int = 20, warmup: int = 2) -> Timing:
-    """Time `call`, after `warmup` calls that are not counted (the first may compile)."""
-    for _ in range(warmup):
-        call()
-    return _timing([_seconds(call) for _ in range(repeats)])
+@dataclass(frozen=True)
+class Row:
+    """One line of results/tables/benchmarks.csv, but for the machine."""
+
+    benchmark: str
+    what: str
+    case: str
+    against: str
+    ratio: float
+    ratio_spread: float
+    median_s: float
+    spread_s: float
+    lowest_s: float
+    repeats: int
+    instructions: float | None = None
+    """Of one call, where they were counted; then nothing was timed."""
 
 
-def compare(calls: dict[str, Callable[[], object]], repeats: int = 20, warmup: int = 2) -> dict[str, Timing]:
-    """Time several calls in turns, so that a slow spell of the machine meets all of them alike."""
+COLUMNS = [field.name for field in fields(Row)]
+
+
+def measure(
+    what: str, case: str, call: Callable[[], object], repeats: int = 20, warmup: int = 2, calls: int = 1
+) -> Timing:
+    """Time `call` alone, after `warmup` calls that are not counted (the first may compile)."""
+    return compare(what, {case: call}, repeats, warmup, {case: calls})[case]
+
+
+def compare(
+    what: str,
+    calls: dict[str, Callable[[], object]],
+    repeats: int = 20,
+    warmup: int = 2,
+    counts: dict[str, int] | int = 1,
+) -> dict[str, Timing]:
+    """Time several calls in turns, each against the first.
+
+    A call that does its work `counts` times over is reported by one of them. ValueError with fewer than two
+    repeats, which have no spread.
+    """
+    if repeats < 2:
+        raise ValueError("a spread needs at least two repeats")
     for call in calls.values():
         for _ in range(warmup):
             call()
     seconds: dict[str, list[float]] = {name: [] for name in calls}
     for _ in range(repeats):
         for name, call in calls.items():
-            seconds[name].append(_seconds(call))
-    return {name: _timing(values) for name, values in seconds.items()}
+            count = counts if isinstance(counts, int) else counts.get(name, 1)
+            seconds[name].append(_seconds(call) / count)
+    first = next(iter(calls))
+    timings = {name: _timing(values, seconds[first]) for name, values in seconds.items()}
+    for name, timing in timings.items():
+        _note(what, name, first, timing)
+    return timings
 
 
 def _seconds(call: Callable[[], object]) -> float:
@@ -48,13 +99,48 @@ def _seconds(call: Callable[[], object]) -> float:
     return time.perf_counter() - begin
 
 
-def _timing(seconds: list[float]) -> Timing:
-    if len(seconds) < 2:
-        raise ValueError("a spread needs at least two repeats")
-    quartiles = statistics.quantiles(seconds, n=4)
-    return Timing(
-        median_s=quartiles[1],
-        lowest_s=min(seconds),
-        spread_s=0.5 * (quartiles[2] - quartiles[0]),
-        repeats=len(seconds),
+def _timing(seconds: list[float], first: list[float]) -> Timing:
+    low, median, high = statistics.quantiles(seconds, n=4)
+    low_ratio, ratio, high_ratio = statistics.quantiles(
+        [own / other for own, other in zip(seconds, first, strict=True)], n=4
     )
+    return Timing(
+        median_s=median,
+        lowest_s=min(seconds),
+        spread_s=0.5 * (high - low),
+        repeats=len(seconds),
+        ratio=ratio,
+        ratio_spread=0.5 * (high_ratio - low_ratio),
+    )
+
+
+def _note(what: str, case: str, against: str, timing: Timing) -> None:
+    row = Row(
+        benchmark=Path(sys.argv[0]).stem,
+        what=what,
+        case=case,
+        against=against,
+        ratio=timing.ratio,
+        ratio_spread=timing.ratio_spread,
+        median_s=timing.median_s,
+        spread_s=timing.spread_s,
+        lowest_s=timing.lowest_s,
+        repeats=timing.repeats,
+    )
+    _add(row)
+
+
+def note_instructions(what: str, counts: dict[str, float]) -> None:
+    """Add a row for each count of instructions, against the first."""
+    first = next(iter(counts))
+    for case, count in counts.items():
+        ratio = count / counts[first]
+        _add(Row(Path(sys.argv[0]).stem, what, case, first, ratio, 0.0, *[math.nan] * 3, 1, count))
+
+
+def _add(row: Row) -> None:
+    path = os.environ.get(ROWS)
+    if not path:
+        return
+    with open(path, "a", newline="", encoding="utf-8") as file:
+        csv.writer(file).writerow(astuple(row))

@@ -52,7 +52,7 @@ def call_repeatedly(kernel, t, x, dx, work, count):
         x[0] += 1e-15 * dx[0]
 
 
-def nanoseconds(models, x):
+def nanoseconds(what, models, x):
     """Of one call of each compiled model, timed in turns."""
     callers = {}
     for name, model in models.items():
@@ -60,7 +60,8 @@ def nanoseconds(models, x):
         callers[name] = lambda kernel=model.kernel, arrays=arrays: call_repeatedly(
             kernel, 0.1, *arrays, CALLS
         )
-    return {name: 1e9 * timing.lowest_s / CALLS for name, timing in compare(callers, REPEATS).items()}
+    timings = compare(f"right-hand side of the wing, {what}", callers, REPEATS, counts=CALLS)
+    return {name: 1e9 * timing.lowest_s for name, timing in timings.items()}
 
 
 def under_load(model):
@@ -117,7 +118,8 @@ def surrogates(found, kind) -> dict:
             label: lambda model=model: simulate(model, TIMES, start, DEFAULT)
             for label, model in models.items()
         }
-        times, calls = compare(runs, REPEATS), nanoseconds(models, start)
+        times = compare(f"30 s of the wing, {name}, {kind}", runs, REPEATS)
+        calls = nanoseconds(f"{name}, {kind}", models, start)
         for label in models:
             blank = f"{'':>61}"
             costs = f"{1e3 * times[label].lowest_s:>13.2f} {calls[label]:>11.0f}"
@@ -155,7 +157,7 @@ def learned_loads(dataset, model) -> None:
             models[fitted.form] = LearnedLoad(model, fitted, (load.history,))
     found = best_gradient(eta, exact_forces(basis(), learned.load, eta), 8)
     print(f"\nthe best potential of degree 8 errs by {found:.1e}: dead forces have one")
-    calls = nanoseconds(models, dataset.x_train[5])
+    calls = nanoseconds("under a learned load", models, dataset.x_train[5])
     print("\nlearned load along the span   force, relative   ns more a call")
     for name in models:
         if name != "none":
