@@ -34,6 +34,7 @@ BENCHMARKS = (
     "peers_of_the_beam",
     "peers_of_the_lattice",
     "peers_of_the_surrogates",
+    "scaling",
     "training",
     "wing_surrogates",
     "wing_without_simulation",
