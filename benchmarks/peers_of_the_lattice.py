@@ -176,7 +176,8 @@ def in_panelaero() -> Lift:
     def lift() -> float:
         # it writes into the arrays that it is given
         copies = {name: array.copy() for name, array in arrays.items()}
-        influence, _ = VLM.calc_Qjj({**grid, **copies}, Ma=0.0)
+        with np.errstate(all="ignore"):  # it divides by zero and puts the result right
+            influence, _ = VLM.calc_Qjj({**grid, **copies}, Ma=0.0)
         pressures = influence @ np.full(len(grid_of), -alpha)
         return float(np.abs(np.sum(pressures * grid["A"])) / AREA)
 
