@@ -128,7 +128,7 @@ def by_phlearn(dataset: Dataset) -> Fitted:
         phlearn.train(
             model,
             integrator=False,
-            traindata=((x, x, zeros, zeros, zeros + 1.0, None), dx),
+            traindata=((x, x, zeros, zeros, zeros + 1.0, zeros), dx),
             optimizer=optimiser,
             epochs=count,
             batch_size=128,
