@@ -3,8 +3,8 @@
     python benchmarks/peers_of_the_surrogates.py  # needs: pip install opinf phlearn
 
 1,000 free responses of the wing, five samples of each; errors on the study's other fifty. opinf fits
-polynomials in the states by least squares. phlearn trains a pseudo-Hamiltonian network, a Hamiltonian and a
-dissipation matrix, by Adam in torch; states and rates are scaled for it as for ours. Ours are the
+polynomials in the states by least squares. phlearn trains a pseudo-Hamiltonian network, a Hamiltonian and
+dampers of the momenta, by Adam in torch; states and rates are scaled for it as for ours. Ours are the
 port-Hamiltonian polynomial and network. The error of the tip is the largest of 5 s of a fresh free response
 over the peak of its displacement; other libraries' models are integrated by SciPy's Radau.
 """
@@ -108,7 +108,7 @@ def by_phlearn(dataset: Dataset) -> Fitted:
         2 * half,
         skewsymmetric_matrix=torch.tensor(canonical, dtype=torch.float32),
         hamiltonian_est=phlearn.HamiltonianNN(2 * half, WIDTH),
-        dissipation_est=phlearn.R_NN(2 * half, WIDTH),
+        dissipation_est=phlearn.R_estimator([False] * half + [True] * half),
     )
 
     def tensor(values: np.ndarray) -> torch.Tensor:
@@ -142,7 +142,7 @@ def by_phlearn(dataset: Dataset) -> Fitted:
 
     def rates(values: np.ndarray) -> np.ndarray:
         at = tensor(values / states)
-        found = model.rhs(at, torch.zeros((len(at), 1)))
+        found = model.x_dot(at, torch.zeros((len(at), 1)))
         return found.detach().numpy().astype(float) * states
 
     return Fitted(rates, by_radau(rates), seconds)
