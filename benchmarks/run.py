@@ -28,6 +28,7 @@ HERE = Path(__file__).parent
 BENCHMARKS = (
     "integrators",
     "beam_right_hand_sides",
+    "structures",
     "surrogates",
     "instructions",
     "aerodynamics",

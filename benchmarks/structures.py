@@ -7,7 +7,8 @@ The tables of docs/structures.md are its output.
 from pathlib import Path
 
 import numpy as np
-from beam_right_hand_sides import COMPILED, seconds_a_call
+from beam_right_hand_sides import COMPILED, COMPILED_CALLS, caller
+from timing import compare
 
 from flexsurr.beam import find_equilibrium, natural_modes, reduce, reduced_order, tip_position
 from flexsurr.config.along_span import AlongSpan
@@ -19,6 +20,7 @@ from flexsurr.config.study import Reduction
 STRUCTURES = Path(__file__).parents[1] / "config/structures"
 COUNTS = (8, 16, 32)
 FINEST = 64
+REPEATS = 30
 
 # Patil's wing (1999) under 20 N at the tip.
 WING = {
@@ -101,11 +103,14 @@ def costs() -> None:
         ),
         "tapered_wing": (read_structure(STRUCTURES / "tapered_wing.yaml"), 3),
     }
-    print("\n| compiled right-hand side, reduced | µs |\n|---|---|")
+    callers = {}
     for name, (structure, modes) in cases.items():
         basis = reduce(structure, Reduction(modes=modes, normalisation="mass"))
-        median, spread = seconds_a_call(reduced_order(basis, "hamiltonian", COMPILED), COMPILED, 3)
-        print(f"| {name} | {1e6 * median:.3g} ± {1e6 * spread:.1g} |", flush=True)
+        callers[name] = caller(reduced_order(basis, "hamiltonian", COMPILED), COMPILED)
+    print("\n| compiled right-hand side, reduced | µs |\n|---|---|")
+    timings = compare("right-hand side of structures", callers, REPEATS, counts=COMPILED_CALLS)
+    for name, timing in timings.items():
+        print(f"| {name} | {1e6 * timing.median_s:.3g} ± {1e6 * timing.spread_s:.1g} |")
 
 
 if __name__ == "__main__":
