@@ -131,6 +131,8 @@ class Plan:
             return self._trials_left.get(file.split("/")[1], file)
         if shard := re.fullmatch(r"datasets/(.+)/(.+)/shard-(\d+)\.parquet", file):
             study, data, number = shard.groups()
+            if isinstance(self.studies[study], FilesPlan):
+                return file  # the rule `ingest` makes it
             total, per_job = self.studies[study].shards(data), self.settings.batches.shards_per_job
             batch = batch_of_shard(int(number), total, per_job)
             return f"datasets/{study}/{data}/shards-{batch}.json" if batch else file

@@ -184,3 +184,11 @@ def test_a_structure_is_asked_of_nothing(root):
         "rollout_errors",
         "rollout_cost",
     ]
+
+
+@pytest.mark.parametrize("shards_per_job", [None, 1, 4])
+def test_the_shard_of_a_users_files_is_waited_for_itself(root, shards_per_job):
+    change(root, "own.yaml", "batches", {"shards_per_job": shards_per_job})
+    p = plan(root)
+    files = p.studies["spring"].shard_files("files")
+    assert p.waits_for(files) == files == ["datasets/spring/files/shard-0000.parquet"]
