@@ -28,7 +28,8 @@ beam = Structure(
     damping_out_of_plane_s=1e-3,
 )
 basis = reduce(beam, Reduction(modes=2, normalisation="mass"))
-samples = configuration_samples(basis, "hamiltonian", InitialConditions(), 500)
+# momenta are drawn for this strip, which weighs 0.2 kg
+samples = configuration_samples(basis, "hamiltonian", InitialConditions(p_max_kg_m2_s=0.02), 500)
 surrogate = SavedSurrogate(
     surrogate=fit_port_hamiltonian(samples, 6),
     study="example",

@@ -21,6 +21,7 @@ from flexsurr.export import (
     numpy_file,
     onnx_file,
 )
+from flexsurr.export.aircraft import check_aerodynamics
 from flexsurr.flight import free_modes, stick_model
 from flexsurr.flight.model import FlightModel
 from flexsurr.flight.trim import TrimNotFound, trim
@@ -98,6 +99,7 @@ def _model(path: Path, run_id: str, name: str | None) -> ExportedModel:
 
 def _aircraft(learned: LearnedMap, run_id: str, study: str, name: str | None) -> ExportedModel:
     """The aircraft of a study in straight and level flight, at the study's own condition."""
+    check_aerodynamics(learned, run_id)
     settings = StudyFiles(Path(), study, []).record(SampleStudy)
     flight = settings.flight
     modes = free_modes(stick_model(load_aircraft(Path(settings.aircraft))), flight.elastic_modes)

@@ -69,10 +69,7 @@ def exported_aircraft(
     airspeed, Mach number, onset angles and the twelve coefficients. Raises NotExported for a map that is no
     aerodynamics.
     """
-    if learned.inputs.names != FEATURES or learned.output_names != COEFFICIENTS:
-        raise NotExported(
-            f"{name}: not a map of the {len(FEATURES)} features to {len(COEFFICIENTS)} coefficients"
-        )
+    check_aerodynamics(learned, name)
     modes = len(model.modes.omega_rad_s)
     x, u = argument("x", len(state)), argument("u", len(CONTROLS) + 1)
     air = _air(model, x)
@@ -110,6 +107,14 @@ def exported_aircraft(
         results=concat([air.speed, air.mach, air.alpha, air.beta, coefficients]),
         step_s=recommended_step(lambda at: model.derivative(0.0, at), state, np.maximum(np.abs(state), 1.0)),
     )
+
+
+def check_aerodynamics(learned: LearnedMap, name: str) -> None:
+    """Raise NotExported for a map that is no aerodynamics."""
+    if learned.inputs.names != FEATURES or learned.output_names != COEFFICIENTS:
+        raise NotExported(
+            f"{name}: not a map of the {len(FEATURES)} features to {len(COEFFICIENTS)} coefficients"
+        )
 
 
 def _air(model: FlightModel, x: Value) -> _Air:

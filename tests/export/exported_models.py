@@ -110,7 +110,7 @@ def of_map(name, learned) -> Case:
     return Case(exported_map(learned, name), nothing, u, nothing, learned(u))
 
 
-def of_aircraft(name, learned: NetworkMap) -> Case:
+def of_aircraft(name, learned: PolynomialMap) -> Case:
     """The airliner in flight, in turns and at any deformation, on both sides of the tropopause."""
     generator = np.random.default_rng(6)
     modes = free_modes(stick_model(load_aircraft(GNBA)), 8)
@@ -224,7 +224,7 @@ def cases() -> dict[str, Case]:
         },
         **{name: of_surrogate(name, surrogate) for name, surrogate in surrogates.items()},
         **{name: of_map(name, learned) for name, learned in maps().items()},
-        "aircraft": of_aircraft("aircraft", _aerodynamics()),
+        "aircraft": of_aircraft("aircraft", aerodynamics()),
         **{name: of_module(name, module, module_states(module)) for name, module in modules.items()},
     }
     return {case.model.name: case for case in found.values()}
@@ -240,14 +240,30 @@ def module_states(module: nn.Module) -> int:
     return 3 if isinstance(module, Of) else 4
 
 
-def _aerodynamics() -> NetworkMap:
-    """Any map of the airliner's features."""
-    generator = np.random.default_rng(7)
+def aerodynamics() -> PolynomialMap:
+    """An airliner's aerodynamics of first order, of the usual signs and sizes: it has a trim."""
     half = np.array([0.3, 6000.0, 0.2, 0.2, *[0.01] * 3, *[0.3] * 6, *[5.0] * 6, *[0.1] * 6])
     middle = np.array([0.6, 9000.0, *[0.0] * 23])
-    outputs = Intervals(COEFFICIENTS, np.full(12, -0.5), np.full(12, 0.8))
-    parameters = 0.3 * generator.normal(size=25 * 6 + 6 + 6 * 12 + 12)
-    return NetworkMap(Intervals(FEATURES, middle - half, middle + half), outputs, 6, "tanh", parameters)
+    slopes = {
+        "C_L": {"alpha": 6.0, "i_t": 0.9, "delta_e_left": 0.2, "delta_e_right": 0.2},
+        "C_D": {"alpha": 0.2, "mach": 0.01},
+        "C_Y": {"beta": -0.8, "delta_r": 0.2},
+        "C_m": {"alpha": -1.5, "i_t": -3.5, "q_over_V": -40.0, "delta_e_left": -0.8, "delta_e_right": -0.8},
+        "C_l": {"beta": -0.1, "p_over_V": -7.0, "delta_a_left": 0.1, "delta_a_right": -0.1},
+        "C_n": {"beta": 0.15, "r_over_V": -3.0, "delta_r": -0.1},
+        "C_phi_1": {"alpha": 1e-4, "eta_dot_1_over_V": -1e-6},
+        "C_phi_3": {"delta_a_left": 1e-5, "eta_2": -1e-7},
+    }
+    coefficients = np.zeros((1 + len(FEATURES), len(COEFFICIENTS)))
+    coefficients[0, :4] = 0.2, 0.022, 0.0, 0.05
+    for output, by in slopes.items():
+        for feature, slope in by.items():
+            place = FEATURES.index(feature)
+            coefficients[1 + place, COEFFICIENTS.index(output)] = slope * half[place]
+    exponents = np.concatenate([np.zeros((1, 25), dtype=np.int64), np.eye(25, dtype=np.int64)])
+    return PolynomialMap(
+        Intervals(FEATURES, middle - half, middle + half), COEFFICIENTS, exponents, coefficients
+    )
 
 
 def maps():

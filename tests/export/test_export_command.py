@@ -2,10 +2,12 @@
 
 import subprocess
 import sys
+from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 import pytest
-from exported_models import WING, maps, port_polynomial
+from exported_models import WING, aerodynamics, maps, port_polynomial
 
 from flexsurr.beam import reduce
 from flexsurr.cli.export import main
@@ -23,13 +25,15 @@ from flexsurr.surrogates import SurrogateFileError, save_map
 from flexsurr.training.saved_surrogate import SavedSurrogate, save_surrogate
 
 WING_RUN, MAP_RUN = "port_hamiltonian-0123456789", "network-0123456789"
+AERODYNAMICS_RUN = "polynomial-0123456789"
+CONFIG = Path(__file__).resolve().parents[2] / "config"
 
 
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory):
     """A folder with the runs of a surrogate and of a map, and both as models to export."""
     folder = tmp_path_factory.mktemp("project")
-    for name in (WING_RUN, MAP_RUN):
+    for name in (WING_RUN, MAP_RUN, AERODYNAMICS_RUN):
         (folder / "results/runs" / name).mkdir(parents=True)
     surrogate = port_polynomial(6, 4, even=True)
     basis = reduce(WING, Reduction(modes=3, normalisation="mass"))
@@ -37,6 +41,8 @@ def runs(tmp_path_factory):
     save_surrogate(saved, folder / "results/runs" / WING_RUN / "weights.npz")
     learned = maps()["map network"]
     save_map(learned, folder / "results/runs" / MAP_RUN / "weights.npz")
+    save_map(aerodynamics(), folder / "results/runs" / AERODYNAMICS_RUN / "weights.npz")
+    (folder / "config").symlink_to(CONFIG)
     coefficients = {"output_units": ("1", "1")}
     return folder, exported_surrogate(saved), exported_map(learned, MAP_RUN, **coefficients)
 
@@ -71,6 +77,23 @@ def test_another_name_is_that_of_all_that_is_defined(tmp_path):
     text = (tmp_path / "wing.h").read_text()
     assert "static inline void wing_rates(" in text
     assert "port_hamiltonian_0123456789_" not in text
+
+
+def test_the_aircraft_is_exported_in_trim(tmp_path):
+    main(AERODYNAMICS_RUN, "numpy", "airliner", None, tmp_path / "airliner.py")
+    module = ModuleType("airliner")
+    exec((tmp_path / "airliner.py").read_text(), module.__dict__)
+    rates = module.rates(module.START)
+    speed, mach, *_ = module.outputs(module.START)
+    assert mach == pytest.approx(0.7)
+    assert rates[list(module.STATES).index("north_m")] == pytest.approx(speed)
+    assert np.abs(rates[1:]).max() < 1e-8
+    assert list(module.INPUTS)[-1] == "thrust_N"
+
+
+def test_a_map_that_is_no_aerodynamics_flies_no_aircraft(tmp_path):
+    with pytest.raises(NotExported, match="not a map of the 25 features to 12 coefficients"):
+        main(MAP_RUN, "c", "airliner", None, tmp_path / "airliner.h")
 
 
 @pytest.mark.parametrize(
