@@ -22,7 +22,7 @@ IR_VERSION = 9
 OPERATORS = {
     "add": "Add", "sub": "Sub", "mul": "Mul", "div": "Div", "neg": "Neg", "pow": "Pow", "abs": "Abs",
     "exp": "Exp", "log": "Log", "sqrt": "Sqrt", "reciprocal": "Reciprocal", "sin": "Sin", "tanh": "Tanh",
-    "erf": "Erf", "sigmoid": "Sigmoid", "relu": "Relu", "maximum": "Max", "minimum": "Min",
+    "sigmoid": "Sigmoid", "relu": "Relu", "maximum": "Max", "minimum": "Min",
 }  # fmt: skip
 COMPARISONS = {
     "gt": ("Greater", False), "ge": ("GreaterOrEqual", False), "lt": ("Less", False),
@@ -33,6 +33,8 @@ COMPARISONS = {
 REDUCTIONS = {"sum": "ReduceSum", "amax": "ReduceMax"}
 STATES_NAME, INPUTS_NAME, RATES_NAME, OUTPUTS_NAME = "states", "inputs", "rates", "outputs"
 
+_ERF_IS_ONE = 6.0
+_ERF_TERMS = 120
 _ATAN_HALVINGS = 4
 _ATAN_TERMS = 10
 
@@ -233,6 +235,8 @@ def _made_of_others(operation: str, *operands: Value) -> Value:
         return each("tanh", 0.5 * z) * (each("exp", z) + 1.0)
     if operation == "log1p":
         return each("log", 1.0 + z)
+    if operation == "erf":
+        return _erf(z)
     if operation == "atan":
         return _atan(z)
     if operation == "atan2":
@@ -240,6 +244,16 @@ def _made_of_others(operation: str, *operands: Value) -> Value:
     if operation == "asin":
         return _atan2(z, each("sqrt", (1.0 - z) * (1.0 + z)))
     raise NotExported(f"ONNX has no operator for {operation}")
+
+
+def _erf(z: Value) -> Value:
+    """The error function by a series without a difference (DLMF 7.6.2), held where it is 1 to rounding."""
+    held = each("minimum", each("maximum", z, -_ERF_IS_ONE), _ERF_IS_ONE)
+    square = held * held
+    series: Value = constant(1.0)
+    for n in range(_ERF_TERMS, 0, -1):
+        series = 1.0 + square * (2.0 / (2 * n + 1)) * series
+    return (2.0 / np.sqrt(np.pi)) * held * each("exp", -square) * series
 
 
 def _atan(z: Value) -> Value:

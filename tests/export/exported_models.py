@@ -1,13 +1,15 @@
 """Models of every kind to export, each with what it must give."""
 
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
 
 from flexsurr.aerodynamics.features import ALPHA, BETA, COEFFICIENTS, FEATURES, MACH
-from flexsurr.beam import ModalBasis, reduce, tip_position, tip_twist
+from flexsurr.beam import reduce, tip_position, tip_twist
 from flexsurr.config.aircraft import load_aircraft
 from flexsurr.config.along_span import AlongSpan
 from flexsurr.config.structure import Structure
@@ -81,8 +83,9 @@ class Case:
     outputs: np.ndarray
 
 
-def of_surrogate(name, surrogate, basis=None) -> Case:
+def of_surrogate(name, surrogate, structure: Structure | None = None) -> Case:
     """A surrogate, under generalised forces where it takes any."""
+    basis = reduce(structure, Reduction(modes=3, normalisation="mass")) if structure is not None else None
     generator = np.random.default_rng(1)
     d = len(surrogate.state_names)
     scale = surrogate.scaling.states(d)
@@ -150,21 +153,22 @@ def of_module(name, module: nn.Module, states: int) -> Case:
     return Case(model, at, nothing, rates, nothing)
 
 
-class Of(nn.Module):
-    """Rates of a given function of a linear map."""
+class Elementwise(nn.Module):
+    """Rates of every function number by number, of one linear map."""
 
-    def __init__(self, states, function):
+    def __init__(self, states):
         super().__init__()
         self.linear = nn.Linear(states, states)
-        self.function = function
+        self.mixed = nn.Parameter(torch.randn(len(ELEMENTWISE)))
 
     def forward(self, x):
-        return self.function(self.linear(x))
+        z = self.linear(x)
+        return sum(weight * function(z) for weight, function in zip(self.mixed, ELEMENTWISE, strict=True))
 
 
 ELEMENTWISE = (
     torch.tanh, torch.sigmoid, torch.sin, torch.cos, torch.atan, torch.exp, torch.relu, torch.abs,
-    torch.log1p, torch.expm1, torch.reciprocal, torch.square, nn.functional.softplus,
+    torch.expm1, torch.reciprocal, torch.square, nn.functional.softplus,
     nn.functional.gelu, nn.functional.elu, nn.functional.leaky_relu, nn.functional.hardtanh,
 )  # fmt: skip
 
@@ -193,51 +197,49 @@ def _heavy(surrogate: PortHamiltonian) -> PortHamiltonian:
     return replace(surrogate, potential=Potential(exponents, coefficients))
 
 
-def cases() -> dict[str, Case]:
-    """Every kind of surrogate and map, by name."""
-    basis = _of(WING)
-    of_basis = {
-        "wing": port_polynomial(6, 4, even=True),
-        "wing_mlp": network(MLP, 6, (8,), "tanh"),
-        "wing_dissipative": network(DissipativeHNN, 6, (5, 4), "softplus"),
-    }
-    surrogates = {
-        **{f"hamiltonian {name}": surrogate for name, surrogate in HAMILTONIANS.items()},
-        **{f"port {name}": surrogate for name, surrogate in PORT_HAMILTONIANS.items()},
-        **{f"port {name} with a potential": _heavy(PORT_HAMILTONIANS[name]) for name in HEAVY},
-        **{
-            f"{name} {of.__name__}": network(of, 2, (6, 5), name) for name in ACTIVATIONS for of in (HNN, MLP)
-        },
-        "dissipative": network(DissipativeHNN, 4, (6,), "silu"),
-        "unpaired": _unpaired(),
-        "features": _of_features(),
-    }
-    modules = {
-        form.__name__: form(4) for form in (Plain, Energy, EnergyAndDissipation, Lagrangian, MessagePassing)
-    }
-    modules |= {function.__name__: Of(3, function) for function in ELEMENTWISE}
+OF_WING = {
+    "wing": port_polynomial(6, 4, even=True),
+    "wing_mlp": network(MLP, 6, (8,), "tanh"),
+    "wing_dissipative": network(DissipativeHNN, 6, (5, 4), "softplus"),
+}
+SURROGATES = {
+    **{f"hamiltonian {name}": surrogate for name, surrogate in HAMILTONIANS.items()},
+    **{f"port {name}": surrogate for name, surrogate in PORT_HAMILTONIANS.items()},
+    **{f"port {name} with a potential": _heavy(PORT_HAMILTONIANS[name]) for name in HEAVY},
+    **{f"hnn {name}": network(HNN, 2, (6, 5), name) for name in ACTIVATIONS},
+    "mlp": network(MLP, 2, (6, 5), "atan"),
+    "dissipative": network(DissipativeHNN, 4, (6,), "silu"),
+    "unpaired": _unpaired(),
+    "features": _of_features(),
+}
+MODULES = (Plain, Energy, EnergyAndDissipation, Lagrangian, MessagePassing, Elementwise)
+
+
+def _module(form: type[nn.Module], states: int) -> Case:
     torch.manual_seed(0)
-    found = {
-        **{name: of_surrogate(name, surrogate, basis) for name, surrogate in of_basis.items()},
-        **{
-            name: of_surrogate(name, network(MLP, 6, (8,), "tanh"), _of(wing)) for name, wing in WINGS.items()
-        },
-        **{name: of_surrogate(name, surrogate) for name, surrogate in surrogates.items()},
-        **{name: of_map(name, learned) for name, learned in maps().items()},
-        "aircraft": of_aircraft("aircraft", aerodynamics()),
-        **{name: of_module(name, module, module_states(module)) for name, module in modules.items()},
-    }
-    return {case.model.name: case for case in found.values()}
+    return of_module(form.__name__, form(states), states)
 
 
-def _of(structure: Structure) -> ModalBasis:
-    """Three modes of a structure."""
-    return reduce(structure, Reduction(modes=3, normalisation="mass"))
+def _makers() -> dict[str, Callable[[], Case]]:
+    makers: dict[str, Callable[[], Case]] = {}
+    for name, surrogate in OF_WING.items():
+        makers[name] = partial(of_surrogate, name, surrogate, WING)
+    for name, wing in WINGS.items():
+        makers[name] = partial(of_surrogate, name, OF_WING["wing_mlp"], wing)
+    for name, surrogate in SURROGATES.items():
+        makers[name] = partial(of_surrogate, name, surrogate)
+    for name, learned in maps().items():
+        makers[name] = partial(of_map, name, learned)
+    makers["aircraft"] = partial(of_aircraft, "aircraft", aerodynamics())
+    for form in MODULES:
+        makers[form.__name__] = partial(_module, form, 4)
+    return {name.replace(" ", "_"): maker for name, maker in makers.items()}
 
 
-def module_states(module: nn.Module) -> int:
-    """How many states it takes."""
-    return 3 if isinstance(module, Of) else 4
+@cache
+def case(name: str) -> Case:
+    """The case of this name, one of `NAMES`."""
+    return _MAKERS[name]()
 
 
 def aerodynamics() -> PolynomialMap:
@@ -279,3 +281,7 @@ def maps():
         "map network": NetworkMap(inputs, outputs, 7, "softplus", parameters, products),
         "map polynomial": PolynomialMap(inputs, ("C_L", "C_D"), exponents, coefficients),
     }
+
+
+_MAKERS = _makers()
+NAMES = tuple(_MAKERS)
