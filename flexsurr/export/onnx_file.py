@@ -253,7 +253,7 @@ def _erf(z: Value) -> Value:
     series: Value = constant(1.0)
     for n in range(_ERF_TERMS, 0, -1):
         series = 1.0 + square * (2.0 / (2 * n + 1)) * series
-    return (2.0 / np.sqrt(np.pi)) * held * each("exp", -square) * series
+    return held * each("exp", -square) * series * float(2.0 / np.sqrt(np.pi))
 
 
 def _atan(z: Value) -> Value:
