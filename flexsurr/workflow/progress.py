@@ -144,17 +144,22 @@ class Progress:
 
 
 class Teller(logging.Handler):
-    """Follows the jobs by what Snakemake logs of them, and says the line of `progress` after each."""
+    """Follows the jobs by what Snakemake logs of them, and says how far they are after each.
 
-    def __init__(self, progress: Progress, say: Callable[[str], object]) -> None:
+    `progress` is asked for once jobs are planned.
+    """
+
+    def __init__(self, progress: Callable[[], Progress], say: Callable[[str], object]) -> None:
         super().__init__()
-        self._progress, self._say = progress, say
+        self._of_run, self._say = progress, say
+        self._progress = Progress(None)
 
     def emit(self, record: logging.LogRecord) -> None:
         """Take what a record tells by its `event`, a word of Snakemake's."""
         told = vars(record)
         match told.get("event"):
             case "run_info":
+                self._progress = self._of_run()
                 self._progress.planned(
                     {rule: count for rule, count in told["stats"].items() if rule != "total"}
                 )

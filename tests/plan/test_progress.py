@@ -83,7 +83,7 @@ def test_elsewhere_nobody_knows_when_it_ends(clock):
 def test_it_follows_what_snakemake_logs(clock):
     run, said = Progress(2, (), {"train": 10.0}, clock), []
     logger = logging.Logger("of the workflow")
-    logger.addHandler(Teller(run, said.append))
+    logger.addHandler(Teller(lambda: run, said.append))
 
     def log(event: LogEvent, **values: object) -> None:
         logger.info("", extra={"event": event, **values})

@@ -5,10 +5,15 @@ from flexsurr.workflow.progress import Progress, Teller, earlier_means
 # Their jobs take every core, unless the configuration says otherwise.
 TIMED = ("evaluate", "rollout_cost", "fly_randomly")
 
-if workflow.is_main_process and not workflow.dryrun:
-    progress = Progress(
+
+def progress():
+    """What is known before the first job. Where jobs go is not known before."""
+    return Progress(
         workflow.resource_settings.cores if workflow.local_exec else None,
         TIMED if plan.settings.timing.cores is None else (),
         earlier_means(Path(RESULTS) / "benchmarks"),
     )
+
+
+if workflow.is_main_process:
     logger.addHandler(Teller(progress, logger.info))
