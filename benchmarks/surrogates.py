@@ -11,7 +11,7 @@ from numba import njit
 from timing import compare
 
 from flexsurr.simulation import rhs
-from flexsurr.surrogates import ACTIVATIONS, HNN, MLP, PolynomialHamiltonian, Scaling, compiled
+from flexsurr.surrogates import ACTIVATIONS, HNN, MLP, EvenHNN, PolynomialHamiltonian, Scaling, compiled
 from flexsurr.surrogates.monomials import monomials_to_degree
 
 COMPILED_CALLS = 5000
@@ -39,6 +39,12 @@ def network(form, hidden, activation):
     size = sum(int(np.prod(shape)) for shape in form.shapes(2, hidden))
     weights = np.random.default_rng(0).normal(size=size)
     return compiled(form(weights, SCALING, NAMES, UNITS, hidden, activation))
+
+
+def even_network(neurons, activation):
+    size = sum(int(np.prod(shape)) for shape in EvenHNN.shapes(2, neurons))
+    weights = np.random.default_rng(0).normal(size=size)
+    return compiled(EvenHNN(weights, SCALING, NAMES, UNITS, (neurons,), activation))
 
 
 def polynomial(degree, kind):
@@ -72,6 +78,9 @@ def main() -> None:
     ):
         models = {degree: polynomial(degree, kind) for degree in degrees}
         show(f"{label} {', '.join(map(str, degrees))}", models, reference)
+    for activation in ("half_log", "atan"):
+        models = {neurons: even_network(neurons, activation) for neurons in (4, 8, 16)}
+        show(f"even_hnn {activation}, 4, 8, 16 neurons", models, reference)
     print(f"{'one hidden layer':<34}", *(f"{width:>13}" for width in WIDTHS))
     for form in (HNN, MLP):
         for activation in ACTIVATIONS:

@@ -11,7 +11,7 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, cast, get_args
 
 import numpy as np
 import pandas as pd
@@ -20,7 +20,10 @@ from pydantic import TypeAdapter
 from flexsurr.beam import find_equilibrium, loaded, reduced_order
 from flexsurr.config.load import Load
 from flexsurr.config.study import Integrator, Variant
-from flexsurr.simulation import Trajectory, simulate
+from flexsurr.evaluation.accuracy import tip_error
+from flexsurr.evaluation.cases import Case, reference_solution, tip_motion
+from flexsurr.simulation import Ensemble, Trajectory, simulate, simulate_ensemble
+from flexsurr.simulation.ensemble import Observe
 from flexsurr.simulation.rhs import Array, Model
 from flexsurr.surrogates import Hamiltonian, compiled
 from flexsurr.training import saved_surrogate
@@ -31,6 +34,18 @@ if TYPE_CHECKING:
 
 ANY_STIFFNESS = Integrator(method="scipy_lsoda", rtol=1e-8, atol=1e-10)
 """Changes by itself between a smooth method and a stiff one; nothing has to be compiled."""
+
+
+COMPILED_STIFF = Integrator(method="radau_iia_5", rtol=1e-6, atol=1e-9)
+"""Takes any surrogate, and is compiled: what ensembles are stepped by where nothing else is asked for."""
+
+REFERENCE = Integrator(method="radau_iia_5", rtol=1e-9, atol=1e-12)
+"""By which the model that a surrogate stands for is stepped where errors are asked for."""
+
+Kept = Literal["final", "states", "tip", "final_tip", "tip_error"]
+"""What is kept of each trajectory: (d,), (m, d), (m, 3) [m], (3,) [m] or a number [%]."""
+
+AnyLoad = Load | Mapping[str, Any]
 
 
 class OutOfRange(UserWarning):
@@ -180,6 +195,102 @@ class LoadedSurrogate:
         model = reduced_order(basis, variant, "compiled")
         times = _times(duration_s, step_s)
         return self._response(model, "reduced order", model.energy, times, initial, load, integrator)
+
+    def simulate_ensemble(
+        self,
+        *,
+        initial: Array,
+        duration_s: float,
+        keep: Kept = "final",
+        load: AnyLoad | list[AnyLoad | None] | None = None,
+        step_s: float = 0.01,
+        integrator: Integrator = COMPILED_STIFF,
+        threads: int | None = None,
+        device: str | None = None,
+    ) -> Ensemble:
+        """Responses from each of the states `initial` (n, d) over `duration_s`, on all cores.
+
+        keep: of each response its `final` state or all `states`, the position of the tip at the end
+        (`final_tip`) or over time (`tip`), or `tip_error`, its largest error in percent of the largest
+        displacement of the reduced-order model that the surrogate stands for, which is simulated too;
+        infinite where the response ends early. It is `kept` of what is returned; states and tips over time
+        are sampled about every `step_s`, and not a number from where a response has ended.
+        load: as in `simulate`, one for all or one for each.
+        integrator: a fixed step, {rk4, dop853_fixed}, steps small surrogates 64 at a time, and is the
+        fastest by far; it must be short enough for the fastest motion.
+        threads: by default as many as there are cores. Results are the same with any number.
+        device: "cuda" or "cpu", where torch steps them; for fixed steps without loads.
+
+        Warns with `OutOfRange` where a state leaves the training range, once. Raises ValueError as
+        `simulate` does.
+        """
+        if keep not in get_args(Kept):
+            raise ValueError(f"keep: {keep!r} is not allowed; allowed: {', '.join(get_args(Kept))}")
+        if keep not in ("final", "states") and self.saved.basis is None:
+            raise ValueError(f"keep: {self.saved.run_id} stands for no structure that has a tip")
+        x0 = np.asarray(initial, dtype=np.float64)
+        if x0.ndim != 2 or x0.shape[1] != len(self.state_names) or not np.isfinite(x0).all():
+            raise ValueError(
+                f"initial: rows of {len(self.state_names)} finite numbers are needed, one for each of "
+                f"{', '.join(self.state_names)}"
+            )
+        t = _times(duration_s, duration_s if keep.startswith("final") else step_s)
+        models: Model | list[Model]
+        if isinstance(load, list):
+            models = [self._under(self._model, each) for each in load]
+        else:
+            models = self._under(self._model, load)
+        observe = self._observing(keep, t, x0, models)
+        left: list[str] = []
+
+        def note(numbers: slice, x: Array) -> Array:
+            left.extend(filter(None, map(self.saved.outside, x)))
+            return observe(numbers, x)
+
+        if device is None:
+            found = simulate_ensemble(models, t, x0, integrator, observe=note, threads=threads)
+        elif load is None:
+            from flexsurr.training.on_device import simulate_on_device  # here, for it imports torch
+
+            found = simulate_on_device(self.saved.surrogate, t, x0, integrator, device, note)
+        else:
+            raise ValueError("device: torch knows no loads; leave device or load out")
+        if left:
+            warnings.warn(f"{len(left)} of {len(x0)} responses, {left[0]}", OutOfRange, stacklevel=2)
+        return found
+
+    def _observing(self, keep: Kept, t: Array, x0: Array, models: Model | list[Model]) -> Observe:
+        """What makes of states (k, m, d) what is kept of them."""
+
+        def tips(numbers: slice, x: Array) -> Array:
+            # one after another, for the joints of all at once would take more memory than their states
+            return np.stack([np.asarray(self.saved.tip(states)) for states in x])
+
+        observers: dict[Kept, Observe] = {
+            "final": lambda numbers, x: x[:, -1],
+            "states": lambda numbers, x: x,
+            "tip": tips,
+            "final_tip": lambda numbers, x: tips(numbers, x[:, -1:])[:, 0],
+        }
+        return observers.get(keep) or self._tip_errors(t, x0, models)
+
+    def _tip_errors(self, t: Array, x0: Array, models: Model | list[Model]) -> Observe:
+        """What makes of states (k, m, d) the largest error of each tip, in percent of the largest motion."""
+        assert self.saved.basis is not None
+        basis, variant = self.saved.basis, cast("Variant", self.saved.variant)
+        exact = reduced_order(basis, variant, "numpy")
+
+        def errors(numbers: slice, x: Array) -> Array:
+            found = np.full(len(x), np.inf)
+            for k in np.flatnonzero(np.isfinite(x[:, -1]).all(axis=1)):
+                number = numbers.start + int(k)
+                model = models[number] if isinstance(models, list) else models
+                case = Case(number, x0[number], getattr(model, "load", None))
+                reference = reference_solution(basis, variant, case, t, REFERENCE)
+                found[k] = tip_error(reference, tip_motion(exact, x[k])).whole_percent
+            return found
+
+        return errors
 
     def _response(
         self,

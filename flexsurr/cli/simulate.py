@@ -10,7 +10,8 @@ from flexsurr.cli.command import Job, command
 from flexsurr.config.part import part_of
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Study
-from flexsurr.simulation import simulate
+from flexsurr.simulation import simulate_ensemble
+from flexsurr.simulation.rhs import rates
 from flexsurr.storage import Shard, ShardMetadata, write_shard
 
 log = logging.getLogger(__name__)
@@ -25,22 +26,23 @@ def main(job: Job, output: Path) -> None:
     states = draw_initial_conditions(basis, dataset.initial_conditions, study.seed, first, count)
     times = dataset.step_s * np.arange(round(dataset.duration_s / dataset.step_s) + 1, dtype=np.float64)
     numbers, t, x, dx, failures = [], [], [], [], []
-    for number, x0 in zip(range(first, first + count), states, strict=True):
-        trajectory = simulate(model, times, x0, dataset.integrator)
-        rates = np.array(
-            [model.derivative(*sample) for sample in zip(trajectory.t, trajectory.x, strict=True)]
-        )
-        kept = int(np.isfinite(rates).all(axis=1).cumprod().sum())
+    responses = simulate_ensemble(model, times, states, dataset.integrator, threads=1)
+    for number, found, reason in zip(
+        range(first, first + count), responses.kept, responses.reasons, strict=True
+    ):
+        reached = int(np.isfinite(found).all(axis=1).sum())
+        of_states = rates(model, times[:reached], found[:reached])
+        kept = int(np.isfinite(of_states).all(axis=1).cumprod().sum())
         if kept == 0:
             raise ArithmeticError(f"trajectory {number}: its initial state is too large to have a rate")
-        if kept < len(rates) or not trajectory.completed:
-            reason = trajectory.reason if kept == len(rates) else "the rates left the finite numbers"
-            failures.append(f"trajectory {number}: {reason} at {trajectory.t[kept - 1]:g} s")
+        if kept < reached or reason:
+            why = reason if kept == reached else "the rates left the finite numbers"
+            failures.append(f"trajectory {number}: {why} at {times[kept - 1]:g} s")
             log.warning(failures[-1])
         numbers.append(np.full(kept, number))
-        t.append(trajectory.t[:kept])
-        x.append(trajectory.x[:kept])
-        dx.append(rates[:kept])
+        t.append(times[:kept])
+        x.append(found[:kept])
+        dx.append(of_states[:kept])
     shard = Shard(
         trajectory=np.concatenate(numbers),
         t=np.concatenate(t),

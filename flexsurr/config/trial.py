@@ -82,6 +82,21 @@ class FieldNetwork(TrainedField):
     optimisers = ("levenberg_marquardt", "lbfgs", "adam", "adam_cosine", "adamw", "adamw_cosine")
 
 
+class EvenNetwork(TrainedField):
+    """A network of an energy that is even in q and in p."""
+
+    architecture: Literal["even_hnn"]
+    """An energy that depends on products of coordinates and on products of momenta alone: for structures that
+    are their own mirror image, without gravity across it, and not damped.
+    """
+    hidden: OneLayer
+    """Neurons of its one hidden layer, in brackets all the same: [8]."""
+    activation: Activation
+    """Activation function of its neurons."""
+
+    optimisers = ("levenberg_marquardt",)
+
+
 class FieldPolynomial(StateField):
     """A polynomial Hamiltonian, or polynomials of mass matrix, stiffness and damping."""
 
@@ -291,6 +306,7 @@ class Trial(Architecture, Optimiser):
 
 FIELDS: tuple[type[Architecture], ...] = (
     FieldNetwork,
+    EvenNetwork,
     FieldPolynomial,
     PortHamiltonianNetwork,
     TorchModule,

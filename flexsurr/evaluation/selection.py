@@ -5,6 +5,8 @@ import statistics
 from collections.abc import Iterable
 from typing import Any
 
+import numpy as np
+
 from flexsurr.beam import ModalBasis, reduced_order
 from flexsurr.config.study import Study, Variant
 from flexsurr.evaluation.accuracy import tip_error
@@ -18,7 +20,7 @@ from flexsurr.evaluation.cases import (
     tip_motion,
 )
 from flexsurr.evaluation.energy import energy_error_percent
-from flexsurr.simulation import simulate
+from flexsurr.simulation import simulate_ensemble
 from flexsurr.surrogates import compiled
 
 
@@ -40,14 +42,17 @@ def long_response_errors(
     Hamiltonian along the surrogate's trajectory) and diverged, the number of responses that did not
     reach their end. A figure that has no finite value is None; a diverged response counts as the worst.
     """
-    model = compiled(surrogate)
+    references = list(references)
     exact = reduced_order(basis, variant, "numpy")
+    starts = np.array([reference.case.x0 for reference in references])
+    responses = simulate_ensemble(
+        compiled(surrogate), references[0].t, starts, study.evaluation.judging_integrator, threads=1
+    )
     errors, drifts, diverged = [], [], 0
-    for reference in references:
-        trajectory = simulate(model, reference.t, reference.case.x0, study.evaluation.judging_integrator)
-        if trajectory.completed:
-            errors.append(tip_error(reference, tip_motion(exact, trajectory.x)).whole_percent)
-            energy = energy_above_rest(basis, variant, trajectory.x)
+    for reference, x, completed in zip(references, responses.kept, responses.completed, strict=True):
+        if completed:
+            errors.append(tip_error(reference, tip_motion(exact, x)).whole_percent)
+            energy = energy_above_rest(basis, variant, x)
             drifts.append(energy_error_percent(basis.structure, reference, energy, 0.0))
         else:
             errors.append(math.inf)

@@ -13,7 +13,7 @@ from flexsurr.export.expressions import Value, argument, concat
 from flexsurr.export.learned_maps import outputs_of_map
 from flexsurr.export.scaled_fields import NotExported, scaled_field
 from flexsurr.simulation.rhs import Array
-from flexsurr.surrogates import Hamiltonian, LearnedMap, PolynomialHamiltonian, Surrogate
+from flexsurr.surrogates import EvenHNN, Hamiltonian, LearnedMap, PolynomialHamiltonian, Surrogate
 from flexsurr.surrogates.hnn import ScalarNetworks
 from flexsurr.surrogates.scaling import origins, scaled_states
 from flexsurr.training.saved_surrogate import MARGIN, SavedSurrogate
@@ -203,7 +203,7 @@ def _scaled_energy_at_origin(surrogate: Surrogate) -> float:
     origin = scaled_states(surrogate.scaling, np.zeros(len(surrogate.state_names)))
     if isinstance(surrogate, ScalarNetworks):
         return float(surrogate.scaled_scalar(origin, 0))
-    if isinstance(surrogate, PolynomialHamiltonian):
+    if isinstance(surrogate, PolynomialHamiltonian | EvenHNN):
         return float(surrogate.scaled_energy(origin))
     return 0.0
 

@@ -12,6 +12,7 @@ from flexsurr.surrogates import (
     HNN,
     MLP,
     DissipativeHNN,
+    EvenHNN,
     NetworkPortHamiltonian,
     PolynomialHamiltonian,
     PolynomialPortHamiltonian,
@@ -41,6 +42,8 @@ def scaled_field(surrogate: Surrogate, x: Value) -> tuple[Value, Value | None]:
         energy, gradient = _scalar_network(surrogate, 0, x)
         _, dissipation = _scalar_network(surrogate, 1, x)
         return _symplectic(gradient) + dissipation, energy
+    if isinstance(surrogate, EvenHNN):
+        return _even_network(surrogate, x)
     if isinstance(surrogate, PolynomialHamiltonian):
         return _polynomial(surrogate, x)
     if isinstance(surrogate, PortHamiltonian):
@@ -106,6 +109,25 @@ def _scalar_network(surrogate: HNN | DissipativeHNN, number: int, x: Value) -> t
     return sigma(z) @ readout, gradient
 
 
+def _even_network(surrogate: EvenHNN, x: Value) -> tuple[Value, Value]:
+    sigma, sigma_slope = activation(surrogate.activation)
+    weights, biases, readout = surrogate.arrays()
+    r = x.size // 2
+    rows, columns = rows_and_columns(r)
+    halves = x[:r], x[r:]
+    z = concat([take(half, rows) * take(half, columns) for half in halves]) @ weights + biases
+    by_products = (sigma_slope(z) * readout) @ weights.T
+    parts = by_products[: len(rows)], by_products[len(rows) :]
+    gradient = concat([_by_factors(part, half) for part, half in zip(parts, halves, strict=True)])
+    return _symplectic(gradient), sigma(z) @ readout
+
+
+def _by_factors(by_products: Value, x: Value) -> Value:
+    """Derivatives by `x` (r,) of what has these derivatives by the packed products x_i x_j."""
+    result: Value = (take(by_products, _packed_places(x.size)) * (1.0 + np.eye(x.size))) @ x
+    return result
+
+
 def _polynomial(surrogate: PolynomialHamiltonian, x: Value) -> tuple[Value, Value]:
     lower, tensor = differentiate(surrogate.exponents)
     gradient = monomials(lower, x) @ (tensor @ surrogate.parameters).T
@@ -151,10 +173,7 @@ def _network_mass(surrogate: NetworkPortHamiltonian, q: Value) -> tuple[Value, A
         turned = rates @ factor
         adjoint = ((take(rates, rows) * take(turned, columns)) @ readout) * sigma_slope(z)
         by_inputs: Value = adjoint @ weights.T
-        if not surrogate.even:
-            return by_inputs
-        both = take(by_inputs, _packed_places(r)) * (1.0 + np.eye(r))
-        return both @ q
+        return _by_factors(by_inputs, q) if surrogate.even else by_inputs
 
     return take(constant(surrogate.floor), _packed_places(r)) + factor @ factor.T, gyroscopic
 

@@ -39,6 +39,7 @@ COLOURS: dict[str, str] = {
     "polynomial": GREEN,
     "dissipative_hnn": PURPLE,
     "port_hamiltonian": SKY,
+    "even_hnn": "#004C8C",
 }
 NAMES: dict[str, str] = {
     "reference": "reduced order",
@@ -51,6 +52,7 @@ NAMES: dict[str, str] = {
     "polynomial": "polynomial H",
     "dissipative_hnn": "D-HNN",
     "port_hamiltonian": "port-Hamiltonian",
+    "even_hnn": "even HNN",
 }
 DASHES: dict[str, Any] = {
     "mlp": (0, (4, 1.5)),
@@ -58,6 +60,7 @@ DASHES: dict[str, Any] = {
     "polynomial": (0, (1, 1)),
     "dissipative_hnn": (0, (5, 1, 1, 1)),
     "port_hamiltonian": (0, (2.5, 2.5)),
+    "even_hnn": (0, (1.5, 1.0)),
 }
 """Line styles beside the colours, for those who print in black and white; solid where none is given."""
 

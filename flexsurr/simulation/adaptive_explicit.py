@@ -95,7 +95,7 @@ def _integrate(constant, kernel, t, x, rtol, atol, work, k, dense, y, now, new):
     return row, time, evaluations, steps, COMPLETED
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy")
 def run_dop853(constant, kernel, t, x, rtol, atol, work):
     """Fill x (m, d) from its first row at times t (m,), to relative and absolute tolerance a step.
 

@@ -17,7 +17,7 @@ from flexsurr.simulation.outcome import COMPLETED, NOT_FINITE
 from flexsurr.simulation.rhs import Array
 
 # Sample times such as k·0.01 differ by an interval plus rounding; that must not cost a further step.
-_ROUNDING = 1e-9
+ROUNDING = 1e-9
 
 _OPTIONS = {"fastmath": ORDERED, "error_model": "numpy", "_nrt": False, "forceinline": True}
 
@@ -59,7 +59,7 @@ def all_finite(x):
     return total == 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy")
 def run_fixed_step(method, kernel, t, x, longest_step, work):
     """Fill x (m, d) from its first row at times t (m,), in equal steps of `longest_step` [s] or less.
 
@@ -79,7 +79,7 @@ def run_fixed_step(method, kernel, t, x, longest_step, work):
     for row in range(1, t.size):
         begin = t[row - 1]
         interval = t[row] - begin
-        count = max(1, int(np.ceil(interval / longest_step * (1.0 - _ROUNDING))))
+        count = max(1, int(np.ceil(interval / longest_step * (1.0 - ROUNDING))))
         h = interval / count
         for n in range(count):
             calls = advance(method, kernel, begin + n * h, h, state, scratch, work)

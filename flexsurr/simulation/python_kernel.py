@@ -56,6 +56,13 @@ def raise_pending() -> None:
         raise _pending.pop()
 
 
+def calls_python(kernel: object) -> bool:
+    """Whether Python is called by `kernel`, or by a kernel within it."""
+    return isinstance(kernel, PythonKernel) or (
+        isinstance(kernel, tuple) and any(calls_python(part) for part in kernel)
+    )
+
+
 @intrinsic
 def _call(context, address):
     """Call the C function without arguments at `address`."""

@@ -256,7 +256,7 @@ def _integrate(
     return row, time, evaluations, steps, COMPLETED
 
 
-@njit(cache=True, error_model="numpy", fastmath=ORDERED)
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=ORDERED)
 def run_radau(kernel, t, x, rtol, atol, work):
     """Fill x (m, d) from its first row at times t (m,), to relative and absolute tolerance a step.
 

@@ -101,6 +101,22 @@ def implements_rhs(
     return register
 
 
+def rates(model: Model, t: Array, x: Array) -> Array:
+    """ẋ (m, d) at times `t` (m,) [s] and states `x` (m, d), by compiled code if the model has it."""
+    if not isinstance(model, CompiledModel):
+        return np.array([model.derivative(*sample) for sample in zip(t, x, strict=True)])
+    dx = np.empty_like(x)
+    evaluate_each(model.kernel, t, np.ascontiguousarray(x), dx, np.empty(model.work_size))
+    return dx
+
+
+@njit(cache=True, error_model="numpy")
+def evaluate_each(kernel, t, x, dx, work):
+    """`evaluate` for m samples: t (m,), x and dx (m, d)."""
+    for k in range(t.size):
+        rhs(kernel, t[k], x[k], dx[k], work)
+
+
 @njit(cache=True, error_model="numpy")
 def evaluate(kernel, t, x, dx, work):
     """`rhs` as a call from Python: write ẋ into `dx`."""

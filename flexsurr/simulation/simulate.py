@@ -35,7 +35,8 @@ def simulate(model: Model, t: Array, x0: Array, integrator: Integrator) -> Traje
     """
     t = np.ascontiguousarray(t, dtype=np.float64)
     x0 = np.asarray(x0, dtype=np.float64)
-    _check(model, t, x0)
+    check_times(t)
+    _check(model, x0)
     run = (run_compiled if integrator.method in COMPILED else run_scipy)(model, integrator)
     x = np.empty((t.size, x0.size))
     x[0] = x0
@@ -58,9 +59,13 @@ def simulate(model: Model, t: Array, x0: Array, integrator: Integrator) -> Traje
     )
 
 
-def _check(model: Model, t: Array, x0: Array) -> None:
+def check_times(t: Array) -> None:
+    """Raise ValueError unless `t` holds one or more finite, increasing times."""
     if t.ndim != 1 or t.size == 0 or not np.isfinite(t).all() or (t[1:] <= t[:-1]).any():
         raise ValueError("t must be a vector of at least one finite, increasing time")
+
+
+def _check(model: Model, x0: Array) -> None:
     d = len(model.state_names)
     if x0.shape != (d,) or not np.isfinite(x0).all():
         raise ValueError(f"x0 must hold {d} finite values, one for each of {', '.join(model.state_names)}")

@@ -42,6 +42,8 @@ from flexsurr.simulation.rhs import rhs
 # Without reference counts, which functions that do not allocate can spare: they cost more than the sums.
 _DECORATOR = '@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)'
 _EXACT = '@njit(error_model="numpy", _nrt=False)'
+# A step is put into its caller, where it is seen which rows are which: only then are its sums vectorised.
+_INLINED = '@njit(error_model="numpy", fastmath=ORDERED, _nrt=False, forceinline=True)'
 
 
 def _sum(row: Row, scale: str = "") -> str:
@@ -93,6 +95,7 @@ def _step(name: str, tableau: ExplicitTableau) -> str:
         "kernel, t, h, x, x_new, k, y, work, constant",
         "Write the state at t + h into x_new, which may be x.",
         body,
+        _INLINED,
     )
 
 

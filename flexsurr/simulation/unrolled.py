@@ -12,7 +12,7 @@ from flexsurr.simulation.dimension import ORDERED, states
 from flexsurr.simulation.rhs import rhs
 
 
-@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)
+@njit(error_model="numpy", fastmath=ORDERED, _nrt=False, forceinline=True)
 def rk4_step(kernel, t, h, x, x_new, k, y, work, constant):
     """Write the state at t + h into x_new, which may be x."""
     d = states(constant, x)
@@ -33,7 +33,7 @@ def rk4_step(kernel, t, h, x, x_new, k, y, work, constant):
         x_new[i] = x[i] + (h * 0.16666666666666666) * k0[i] + (h * 0.3333333333333333) * k1[i] + (h * 0.3333333333333333) * k2[i] + (h * 0.16666666666666666) * k3[i]
 
 
-@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)
+@njit(error_model="numpy", fastmath=ORDERED, _nrt=False, forceinline=True)
 def dop853_step(kernel, t, h, x, x_new, k, y, work, constant):
     """Write the state at t + h into x_new, which may be x."""
     d = states(constant, x)

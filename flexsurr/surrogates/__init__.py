@@ -2,6 +2,7 @@
 
 from flexsurr.surrogates.activations import ACTIVATIONS
 from flexsurr.surrogates.archive import SurrogateFileError
+from flexsurr.surrogates.even_hnn import EvenHNN
 from flexsurr.surrogates.hnn import HNN, DissipativeHNN
 from flexsurr.surrogates.learned_load import LearnedLoad
 from flexsurr.surrogates.learned_map import Intervals, LearnedMap, generalised_force
@@ -32,6 +33,7 @@ __all__ = [
     "MLP",
     "CompiledSurrogate",
     "DissipativeHNN",
+    "EvenHNN",
     "FeatureScaling",
     "Hamiltonian",
     "Intervals",

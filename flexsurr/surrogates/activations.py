@@ -81,6 +81,11 @@ def curvature(tag: Any, z: float) -> float:
     raise TypeError(f"{tag} is an activation of compiled code")
 
 
+def two_slopes(tag: Any, y: float, z: float) -> tuple[float, float]:
+    """σ′(y) and σ′(z) of the activation `tag`, from compiled code only: quotients share one division."""
+    raise TypeError(f"{tag} is an activation of compiled code")
+
+
 Function = Callable[..., Any]
 
 
@@ -199,6 +204,35 @@ def _compile(generic: Function, tag_class: type, formula: Function) -> None:
 for _name, _compiled_formulas in formulas(OF_NUMBERS).items():
     for _generic, _formula in zip((value, slope, curvature), _compiled_formulas, strict=True):
         _compile(_generic, type(TAGS[_name]), _formula)
+
+_QUOTIENTS = {"half_log": lambda z: z, "atan": lambda z: 1.0}
+"""Numerators of the slopes over 1 + z²."""
+
+
+def _separate(tag, y, z):
+    return slope(tag, y), slope(tag, z)
+
+
+def _with_one_division(numerator: Function) -> Function:
+    of_number = njit(**OPTIONS)(numerator)
+
+    def quotients(tag, y, z):
+        of_y, of_z = 1.0 + y * y, 1.0 + z * z
+        inverse = 1.0 / (of_y * of_z)
+        return of_number(y) * of_z * inverse, of_number(z) * of_y * inverse
+
+    return quotients
+
+
+_PAIRS: dict[Any, Function] = {
+    type(TAGS[name]): _with_one_division(numerator) for name, numerator in _QUOTIENTS.items()
+}
+
+
+@overload(two_slopes, jit_options=OPTIONS)
+def _two_slopes(tag, y, z):
+    return _PAIRS.get(tag.instance_class, _separate)
+
 
 ACTIVATIONS = {
     name: ActivationFunction(*of_arrays, TAGS[name]) for name, of_arrays in formulas(OF_ARRAYS).items()

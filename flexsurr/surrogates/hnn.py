@@ -10,8 +10,10 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 from numba import njit
 
+from flexsurr.simulation.dimension import LANES
 from flexsurr.simulation.rhs import FLOATING_POINT, Array, implements_rhs
-from flexsurr.surrogates.activations import slope, value
+from flexsurr.simulation.side_by_side import implements_rhs_of_block
+from flexsurr.surrogates.activations import slope, two_slopes, value
 from flexsurr.surrogates.layers import Shapes, back, forward, offset
 from flexsurr.surrogates.network import Network
 from flexsurr.surrogates.scaling import FeatureScaling, scaled_kernel, scaled_states
@@ -151,12 +153,46 @@ def _phase_plane_hnn(kernel, t, x, dx, work):
     q, p = x[0], x[1]
     dh_dq = 0.0
     dh_dp = 0.0
-    for k in range(bias.size):
-        g = readout[k] * slope(activation, w_q[k] * q + w_p[k] * p + bias[k])
-        dh_dq += g * w_q[k]
-        dh_dp += g * w_p[k]
+    n = offset(bias.size)
+    half = n // offset(2)
+    # neurons k and m together, for slopes that are quotients: a division costs as much as all else
+    for k in range(half):
+        m = half + k
+        a, e = two_slopes(activation, w_q[k] * q + w_p[k] * p + bias[k], w_q[m] * q + w_p[m] * p + bias[m])
+        a *= readout[k]
+        e *= readout[m]
+        dh_dq += a * w_q[k] + e * w_q[m]
+        dh_dp += a * w_p[k] + e * w_p[m]
+    for k in range(half + half, n):
+        a = readout[k] * slope(activation, w_q[k] * q + w_p[k] * p + bias[k])
+        dh_dq += a * w_q[k]
+        dh_dp += a * w_p[k]
     dx[0] = dh_dp
     dx[1] = -dh_dq
+
+
+@implements_rhs_of_block(PhasePlaneHNN)
+def _block_of_hnn(kernel, t, x, dx, work):
+    activation, w_q, w_p, bias, readout = kernel
+    for b in range(2 * LANES):
+        dx[b] = 0.0
+    n = bias.size
+    for k in range(1, n, 2):
+        a_q, a_p, a_b, a_c = w_q[k - 1], w_p[k - 1], bias[k - 1], readout[k - 1]
+        e_q, e_p, e_b, e_c = w_q[k], w_p[k], bias[k], readout[k]
+        for b in range(LANES):
+            q, p = x[b], x[LANES + b]
+            a, e = two_slopes(activation, a_q * q + a_p * p + a_b, e_q * q + e_p * p + e_b)
+            a *= a_c
+            e *= e_c
+            dx[b] += a * a_p + e * e_p
+            dx[LANES + b] -= a * a_q + e * e_q
+    if n % 2 == 1:
+        a_q, a_p, a_b, a_c = w_q[n - 1], w_p[n - 1], bias[n - 1], readout[n - 1]
+        for b in range(LANES):
+            a = a_c * slope(activation, a_q * x[b] + a_p * x[LANES + b] + a_b)
+            dx[b] += a * a_p
+            dx[LANES + b] -= a * a_q
 
 
 class HNNKernel(NamedTuple):

@@ -5,7 +5,9 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
+from flexsurr.simulation.dimension import LANES
 from flexsurr.simulation.rhs import Array, implements_rhs
+from flexsurr.simulation.side_by_side import implements_rhs_of_block
 from flexsurr.surrogates.activations import value
 from flexsurr.surrogates.layers import Shapes, forward, layer_shapes, offset
 from flexsurr.surrogates.network import Network
@@ -75,6 +77,21 @@ def _phase_plane_mlp(kernel, t, x, dx, work):
         dp += a * to_dp[k]
     dx[0] = dq + bias_out[0]
     dx[1] = dp + bias_out[1]
+
+
+@implements_rhs_of_block(PhasePlaneMLP)
+def _block_of_mlp(kernel, t, x, dx, work):
+    activation, w_q, w_p, bias, to_dq, to_dp, bias_out = kernel
+    q_out, p_out = bias_out[0], bias_out[1]
+    for b in range(LANES):
+        dx[b] = q_out
+        dx[LANES + b] = p_out
+    for k in range(bias.size):
+        of_q, of_p, of_1, on_q, on_p = w_q[k], w_p[k], bias[k], to_dq[k], to_dp[k]
+        for b in range(LANES):
+            a = value(activation, of_q * x[b] + of_p * x[LANES + b] + of_1)
+            dx[b] += a * on_q
+            dx[LANES + b] += a * on_p
 
 
 class MLPKernel(NamedTuple):

@@ -91,9 +91,27 @@ def factors(exponents: Exponents) -> tuple[NDArray[np.int64], NDArray[np.int64]]
     return np.array(parents, dtype=np.int64), np.array(of_factors, dtype=np.int64)
 
 
+def runs(exponents: Exponents) -> tuple[NDArray[np.intp], NDArray[np.uint64]]:
+    """How to build a set, as `factors` does, in few pieces: an order (count,) of it, and the pieces (n, 4).
+
+    A row (factor, parent, first, length) says that in this order `length` monomials from `first` on are those
+    from `parent` on, times the factor. Sorted by degree, then by their last variables, all monomials to some
+    degree come in one run for each factor and degree: those that a factor makes are a whole stretch of an
+    earlier degree.
+    """
+    order = np.lexsort((*exponents.T, exponents.sum(axis=1)))
+    pieces: list[list[int]] = []
+    for first, (parent, factor) in enumerate(zip(*factors(exponents[order]), strict=True), start=1):
+        if pieces and pieces[-1][0] == factor and pieces[-1][1] + pieces[-1][3] == parent:
+            pieces[-1][3] += 1
+        else:
+            pieces.append([int(factor), int(parent), first, 1])
+    return order, np.array(pieces, dtype=np.uint64).reshape(-1, 4)
+
+
 @njit(fastmath=FLOATING_POINT, error_model="numpy", _nrt=False)
-def write_monomials(parents, of_factors, d, phi, work):
-    """The monomials of the d variables at `work`'s start, from `phi` on; `factors` says what is made of what.
+def write_monomials(pieces, d, phi, work):
+    """The monomials of the d variables at `work`'s start, from `phi` on, built in the pieces of `runs`.
 
     Products of two variables are left after the variables.
     """
@@ -103,8 +121,39 @@ def write_monomials(parents, of_factors, d, phi, work):
             work[place] = work[i] * work[j]
             place += offset(1)
     work[phi] = 1.0
-    for k in range(offset(parents.size)):
-        work[phi + k + offset(1)] = work[phi + parents[k]] * work[of_factors[k]]
+    for n in range(len(pieces)):
+        factor = work[pieces[n, 0]]
+        parent = phi + pieces[n, 1]
+        first = phi + pieces[n, 2]
+        for k in range(pieces[n, 3]):
+            work[first + k] = work[parent + k] * factor
+
+
+@njit(fastmath=FLOATING_POINT, error_model="numpy", _nrt=False)
+def pull_back(pieces, d, phi, adjoint, slopes, work):
+    """From derivatives by each monomial, at `adjoint`, those by each of the d variables, left at `slopes`.
+
+    `write_monomials` must have run; derivatives by products of two variables take the places after those.
+    """
+    for k in range(d + d * (d + offset(1)) // offset(2)):
+        work[slopes + k] = 0.0
+    for back in range(len(pieces)):
+        n = len(pieces) - 1 - back
+        factor = work[pieces[n, 0]]
+        parent = pieces[n, 1]
+        first = pieces[n, 2]
+        total = 0.0
+        for k in range(pieces[n, 3]):
+            a = work[adjoint + first + k]
+            total += a * work[phi + parent + k]
+            work[adjoint + parent + k] += a * factor
+        work[slopes + pieces[n, 0]] += total
+    place = slopes + d
+    for i in range(d):
+        for j in range(i + offset(1)):
+            work[slopes + i] += work[place] * work[j]
+            work[slopes + j] += work[place] * work[i]
+            place += offset(1)
 
 
 def _last_variable(row: tuple[int, ...]) -> int:

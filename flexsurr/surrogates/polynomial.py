@@ -7,7 +7,9 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from flexsurr.simulation.dimension import LANES
 from flexsurr.simulation.rhs import Array, implements_rhs
+from flexsurr.simulation.side_by_side import implements_rhs_of_block
 from flexsurr.surrogates.layers import offset
 from flexsurr.surrogates.monomials import Exponents, differentiate, evaluate_monomials, products
 from flexsurr.surrogates.surrogate import Surrogate, symplectic
@@ -108,15 +110,48 @@ def _oscillator_polynomial(kernel, t, x, dx, work):
     q, p = x[0], x[1]
     s = q if step == 1.0 else q * q
     ds_dq = 1.0 if step == 1.0 else 2.0 * q
-    inverse_mass = 0.0
-    kinetic = 0.0
-    potential = 0.0
-    for k in range(w.size - 1, -1, -1):
-        inverse_mass = inverse_mass * s + w[k]
-        kinetic = kinetic * s + half_dw_ds[k]
-        potential = potential * s + dv_ds[k]
+    # two terms at a time: a sum waits for half as many multiplications
+    odd = w.size % 2
+    inverse_mass = w[w.size - 1] if odd else 0.0
+    kinetic = half_dw_ds[w.size - 1] if odd else 0.0
+    potential = dv_ds[w.size - 1] if odd else 0.0
+    square = s * s
+    for k in range(w.size - odd - 1, 0, -2):
+        inverse_mass = inverse_mass * square + (w[k] * s + w[k - 1])
+        kinetic = kinetic * square + (half_dw_ds[k] * s + half_dw_ds[k - 1])
+        potential = potential * square + (dv_ds[k] * s + dv_ds[k - 1])
     dx[0] = inverse_mass * p
     dx[1] = -ds_dq * (p * p * kinetic + potential)
+
+
+@implements_rhs_of_block(OscillatorPolynomial, rows=2)
+def _block_of_oscillators(kernel, t, x, dx, work):
+    step, w, half_dw_ds, dv_ds = kernel
+    # the inverse mass and the potential in the places of their rates, s and the kinetic part in the scratch
+    odd = w.size % 2
+    of_w = w[w.size - 1] if odd else 0.0
+    of_kinetic = half_dw_ds[w.size - 1] if odd else 0.0
+    of_potential = dv_ds[w.size - 1] if odd else 0.0
+    for b in range(LANES):
+        work[b] = x[b] if step == 1.0 else x[b] * x[b]
+        work[LANES + b] = of_kinetic
+        dx[b] = of_w
+        dx[LANES + b] = of_potential
+    # two terms at a time: half the loads and stores
+    for k in range(w.size - odd - 1, 0, -2):
+        upper_w, lower_w = w[k], w[k - 1]
+        upper_kinetic, lower_kinetic = half_dw_ds[k], half_dw_ds[k - 1]
+        upper_potential, lower_potential = dv_ds[k], dv_ds[k - 1]
+        for b in range(LANES):
+            s = work[b]
+            dx[b] = (dx[b] * s + upper_w) * s + lower_w
+            work[LANES + b] = (work[LANES + b] * s + upper_kinetic) * s + lower_kinetic
+            dx[LANES + b] = (dx[LANES + b] * s + upper_potential) * s + lower_potential
+    for b in range(LANES):
+        p = x[LANES + b]
+        ds_dq = 1.0 if step == 1.0 else 2.0 * x[b]
+        dx[b] *= p
+        dx[LANES + b] = -ds_dq * (p * p * work[LANES + b] + dx[LANES + b])
 
 
 class PolynomialKernel(NamedTuple):

@@ -16,6 +16,7 @@ from flexsurr.surrogates.monomials import (
     differentiate,
     evaluate_monomials,
     factors,
+    runs,
     write_monomials,
 )
 
@@ -70,14 +71,13 @@ class PolynomialMap:
 
     def compiled(self) -> CompiledMapping:
         """Monomials as products, then a sum for each output."""
-        parents, of_factors = factors(self.exponents)
+        order, pieces = runs(self.exponents)
         n = len(self.inputs.names)
         kernel = PolynomialMapKernel(
             self.inputs.origin,
             1.0 / self.inputs.half,
-            parents.astype(np.uint64),
-            of_factors.astype(np.uint64),
-            np.ascontiguousarray(self.coefficients.T).ravel(),
+            pieces,
+            np.ascontiguousarray(self.coefficients[order].T).ravel(),
         )
         work_size = n * (n + 3) // 2 + len(self.exponents)
         return CompiledMapping(kernel, work_size, self.inputs.names, self.output_names)
@@ -92,27 +92,26 @@ class PolynomialMap:
 
 
 class PolynomialMapKernel(NamedTuple):
-    """Monomials of (u − origin) times `inverse` (n,), as `write_monomials` makes them.
+    """Monomials of (u − origin) times `inverse` (n,), as `write_monomials` makes them of `pieces`.
 
     `coefficients` holds those of the first output, then those of the next.
     """
 
     origin: Array
     inverse: Array
-    parents: NDArray[np.uint64]
-    factors: NDArray[np.uint64]
+    pieces: NDArray[np.uint64]
     coefficients: Array
 
 
 @implements_mapping(PolynomialMapKernel)
 def _polynomial_map(kernel, u, y, work):
-    origin, inverse, parents, of_factors, coefficients = kernel
+    origin, inverse, pieces, coefficients = kernel
     n = offset(origin.size)
-    count = offset(parents.size + 1)
+    count = offset(coefficients.size // y.size)
     phi = n + n * (n + offset(1)) // offset(2)
     for i in range(n):
         work[i] = (u[i] - origin[i]) * inverse[i]
-    write_monomials(parents, of_factors, n, phi, work)
+    write_monomials(pieces, n, phi, work)
     for i in range(offset(y.size)):
         total = 0.0
         row = i * count

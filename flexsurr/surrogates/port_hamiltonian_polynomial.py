@@ -15,6 +15,8 @@ from flexsurr.surrogates.monomials import (
     differentiate,
     evaluate_monomials,
     factors,
+    pull_back,
+    runs,
     write_monomials,
 )
 from flexsurr.surrogates.packed import lower, symmetric
@@ -87,12 +89,11 @@ class PolynomialPortHamiltonian(PortHamiltonian):
         """Monomials as products, their adjoints for the gyroscopic term, and a small system."""
         _, of_q, of_p, of_rates = self._scales()
         rows, columns = np.tril_indices(self.pairs)
-        unscaled = self._coefficients * (of_p[rows] / of_rates[columns])[:, None]
-        parents, of_factors = factors(self.exponents)
+        order, pieces = runs(self.exponents)
+        unscaled = self._coefficients[:, order] * (of_p[rows] / of_rates[columns])[:, None]
         kernel = PolynomialPortHamiltonianKernel(
             1.0 / of_q,
-            parents.astype(np.uint64),
-            of_factors.astype(np.uint64),
+            pieces,
             np.ascontiguousarray(unscaled).ravel(),
             np.ascontiguousarray(self.stiffness).ravel(),
             np.ascontiguousarray(self.damping).ravel(),
@@ -112,15 +113,14 @@ class PolynomialPortHamiltonian(PortHamiltonian):
 
 
 class PolynomialPortHamiltonianKernel(NamedTuple):
-    """Monomials of q times `inverse_q` (r,), as `write_monomials` makes them of `parents` and `factors`.
+    """Monomials of q times `inverse_q` (r,), as `write_monomials` makes them of `pieces`.
 
     `mass` holds the coefficients of the packed M, entry by entry; `stiffness` and `damping` are (r, r) row by
     row.
     """
 
     inverse_q: Array
-    parents: NDArray[np.uint64]
-    factors: NDArray[np.uint64]
+    pieces: NDArray[np.uint64]
     mass: Array
     stiffness: Array
     damping: Array
@@ -128,10 +128,10 @@ class PolynomialPortHamiltonianKernel(NamedTuple):
 
 @implements_rhs(PolynomialPortHamiltonianKernel, inline=False)
 def _polynomial_port_hamiltonian(kernel, t, x, dx, work):
-    inverse_q, parents, of_factors, mass, stiffness, damping = kernel
+    inverse_q, pieces, mass, stiffness, damping = kernel
     r = offset(inverse_q.size)
     entries = r * (r + offset(1)) // offset(2)
-    count = offset(parents.size + 1)
+    count = offset(mass.size) // entries
     # work: factors and their adjoints, monomials and theirs, the packed M, the rates
     slopes = r + entries
     phi = slopes + r + entries
@@ -140,46 +140,50 @@ def _polynomial_port_hamiltonian(kernel, t, x, dx, work):
     rates = matrix + entries
     for i in range(r):
         work[i] = x[i] * inverse_q[i]
-    write_monomials(parents, of_factors, r, phi, work)
-    for e in range(entries):
+    write_monomials(pieces, r, phi, work)
+    # two entries at a time: half the loads of monomials and, below, of their adjoints
+    odd = entries % offset(2)
+    for e in range(offset(0), entries - odd, offset(2)):
         total = 0.0
+        other = 0.0
         row = e * count
         for k in range(count):
             total += mass[row + k] * work[phi + k]
+            other += mass[row + count + k] * work[phi + k]
         work[matrix + e] = total
+        work[matrix + e + offset(1)] = other
+    if odd:
+        total = 0.0
+        row = (entries - odd) * count
+        for k in range(count):
+            total += mass[row + k] * work[phi + k]
+        work[matrix + entries - odd] = total
     for i in range(r):
         work[rates + i] = x[r + i]
     solve_packed(work, np.int64(matrix), np.int64(rates), np.int64(r))
     for i in range(r):
         dx[i] = work[rates + i]
-    # the adjoint of ½ q̇ᵀ M q̇: by the monomials, then by the factors, then by q
-    for k in range(count):
-        work[adjoint + k] = 0.0
-    e = offset(0)
+    # the adjoint of ½ q̇ᵀ M q̇: by the entries of M, in their places; by the monomials; by q
+    e = matrix
     for i in range(r):
         for j in range(i + offset(1)):
             weight = work[rates + i] * work[rates + j]
-            if i == j:
-                weight *= 0.5
-            row = e * count
-            for k in range(count):
-                work[adjoint + k] += weight * mass[row + k]
+            work[e] = 0.5 * weight if i == j else weight
             e += offset(1)
-    for k in range(slopes):
-        work[slopes + k] = 0.0
-    for back in range(count - offset(1)):
-        k = count - offset(2) - back
-        a = work[adjoint + k + offset(1)]
-        parent = parents[k]
-        factor = of_factors[k]
-        work[adjoint + parent] += a * work[factor]
-        work[slopes + factor] += a * work[phi + parent]
-    place = slopes + r
-    for i in range(r):
-        for j in range(i + offset(1)):
-            work[slopes + i] += work[place] * work[j]
-            work[slopes + j] += work[place] * work[i]
-            place += offset(1)
+    for k in range(count):
+        work[adjoint + k] = 0.0
+    for e in range(offset(0), entries - odd, offset(2)):
+        weight = work[matrix + e]
+        other = work[matrix + e + offset(1)]
+        row = e * count
+        for k in range(count):
+            work[adjoint + k] += weight * mass[row + k] + other * mass[row + count + k]
+    if odd:
+        weight = work[matrix + entries - odd]
+        row = (entries - odd) * count
+        for k in range(count):
+            work[adjoint + k] += weight * mass[row + k]
+    pull_back(pieces, r, phi, adjoint, slopes, work)
     for i in range(r):
         dx[r + i] = work[slopes + i] * inverse_q[i]
     springs_and_dampers(stiffness, damping, x, dx)

@@ -9,6 +9,7 @@ import numpy as np
 
 from flexsurr.simulation.rhs import Model
 from flexsurr.surrogates.archive import Kept, read_archive, write_archive
+from flexsurr.surrogates.even_hnn import EvenHNN
 from flexsurr.surrogates.hnn import HNN, DissipativeHNN
 from flexsurr.surrogates.learned_map import Intervals, LearnedMap
 from flexsurr.surrogates.mlp import MLP
@@ -98,6 +99,8 @@ def _surrogate(header: dict[str, Any], arrays: dict[str, np.ndarray]) -> Surroga
     if architecture == NetworkPortHamiltonian.architecture:
         common["potential"] = Potential.kept(arrays)
         return NetworkPortHamiltonian(**common, floor=arrays["floor"], even=bool(header["even"]))
+    if architecture == EvenHNN.architecture:
+        return EvenHNN(**common)
     return NETWORKS[architecture](**common)
 
 

@@ -8,7 +8,7 @@ it returns says which.
 import hashlib
 import inspect
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
@@ -28,7 +28,7 @@ EXPECTED = (
 )
 
 
-def field(module: nn.Module, x: Tensor, create_graph: bool = False) -> Tensor:
+def field(module: Callable[[Tensor], Any], x: Tensor, create_graph: bool = False) -> Tensor:
     """The scaled field (batch, 2r) of `module` at scaled states `x` (batch, 2r).
 
     With `create_graph` its derivatives by the weights can be taken.

@@ -10,6 +10,7 @@ import numpy as np
 
 from flexsurr.config.trial import (
     AdamW,
+    EvenNetwork,
     FieldNetwork,
     FieldPolynomial,
     FirstOrder,
@@ -34,10 +35,11 @@ from flexsurr.surrogates import (
 from flexsurr.training.adam import Adam
 from flexsurr.training.dataset import Dataset, SampleSource
 from flexsurr.training.epochs import Fit, Limits, Loss, Optimiser, Progress, Report, run_epochs
+from flexsurr.training.even_hnn_training import EvenHNNObjective, untrained_even_hnn
 from flexsurr.training.initialisation import initial_parameters
 from flexsurr.training.inverse_dynamics import NotPositiveDefinite, fit_port_hamiltonian
 from flexsurr.training.least_squares import fit_polynomial
-from flexsurr.training.levenberg_marquardt import second_order
+from flexsurr.training.levenberg_marquardt import LevenbergMarquardt, second_order
 from flexsurr.training.losses import FieldErrors
 from flexsurr.training.objective import Objective
 from flexsurr.training.port_hamiltonian_training import (
@@ -112,6 +114,11 @@ def _begun(trial: Iterative, dataset: Dataset) -> tuple[Surrogate, Loss, Loss, O
         inverse, forward = (PortHamiltonianObjective.of(port, *training, forward=f) for f in (False, True))
         held_out = PortHamiltonianObjective.of(port, *validation, forward=True)
         return port, forward, held_out, InverseThenForward(inverse, forward, port.parameters)
+    if isinstance(trial, EvenNetwork):
+        even = untrained_even_hnn(dataset, trial.hidden, trial.activation, trial.seed)
+        products = EvenHNNObjective.of(even, *training)
+        of_validation = EvenHNNObjective.of(even, *validation)
+        return even, products, of_validation, LevenbergMarquardt(products, even.parameters)
     if isinstance(trial, TorchModule):
         from flexsurr.training.torch_training import begun  # here, for it imports torch
 

@@ -1,6 +1,7 @@
 """A surrogate from Python: what its file holds, what it simulates, and where it warns."""
 
 import warnings
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from flexsurr.config.history import Sine
 from flexsurr.config.load import TipForce
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import InitialConditions, Reduction
-from flexsurr.library import ANY_STIFFNESS, OutOfRange
+from flexsurr.library import ANY_STIFFNESS, COMPILED_STIFF, Kept, OutOfRange
 from flexsurr.simulation import simulate
 from flexsurr.surrogates import SurrogateFileError, save
 from flexsurr.training.configuration_samples import configuration_samples
@@ -129,6 +130,52 @@ def test_which_state_leaves_the_range_first_is_named(strip):
 def test_what_it_cannot_do_is_said(strip, values, message):
     with pytest.raises(ValueError, match=message):
         strip.simulate(**{"duration_s": 0.1, **values})
+
+
+STARTS = np.random.default_rng(0).uniform(0.2, 0.8, (5, 4)) * [1.0, 1.0, 0.0, 0.0]
+
+
+def test_an_ensemble_is_what_its_responses_are(strip):
+    x0 = STARTS * strip.saved.high
+    settings = {"duration_s": 0.2, "load": LOAD, "integrator": COMPILED_STIFF}
+    each = [strip.simulate(initial=start, **settings) for start in x0]
+    kept = {k: strip.simulate_ensemble(initial=x0, keep=k, **settings) for k in get_args(Kept)}
+    np.testing.assert_array_equal(kept["states"].kept, [response.x for response in each])
+    np.testing.assert_array_equal(kept["tip"].kept, [response.tip for response in each])
+    np.testing.assert_allclose(kept["final"].kept, [response.x[-1] for response in each], rtol=1e-12)
+    np.testing.assert_allclose(kept["final_tip"].kept, [response.tip[-1] for response in each], rtol=1e-12)
+    assert kept["tip_error"].kept.shape == (5,)
+    assert np.all(kept["tip_error"].kept < 0.1)
+    assert np.all(kept["tip_error"].kept > 0.0)
+
+
+def test_each_response_of_an_ensemble_may_have_a_load(strip):
+    x0 = STARTS[:2] * strip.saved.high
+    found = strip.simulate_ensemble(initial=x0, duration_s=0.2, load=[None, LOAD])
+    for load, start, final in zip([None, LOAD], x0, found.kept, strict=True):
+        one = strip.simulate(initial=start, duration_s=0.2, step_s=0.2, load=load, integrator=COMPILED_STIFF)
+        np.testing.assert_array_equal(final, one.x[-1])
+
+
+def test_an_ensemble_says_once_how_many_leave_the_range(strip):
+    x0 = np.array([0.1, 3.0, 4.0])[:, None] * [1.0, 0.0, 0.0, 0.0] * strip.saved.high
+    with pytest.warns(OutOfRange, match="2 of 3 responses, eta_1 reaches") as caught:
+        strip.simulate_ensemble(initial=x0, duration_s=0.1)
+    assert len(caught) == 1
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ({"keep": "nose"}, "keep: 'nose' is not allowed; allowed: final, states"),
+        ({"initial": [0.0, 0.0, 0.0, 0.0]}, "initial: rows of 4 finite numbers"),
+        ({"load": [None, None]}, "2 models do not fit 1 states"),
+        ({"device": "cpu", "load": LOAD}, "torch knows no loads"),
+    ],
+)
+def test_what_an_ensemble_cannot_be_is_said(strip, values, message):
+    with pytest.raises(ValueError, match=message):
+        strip.simulate_ensemble(**{"initial": np.zeros((1, 4)), "duration_s": 0.1, **values})
 
 
 def test_what_it_prints_is_what_a_person_asks_first(strip):

@@ -9,6 +9,7 @@ from flexsurr.surrogates import (
     HNN,
     MLP,
     DissipativeHNN,
+    EvenHNN,
     Network,
     NetworkPortHamiltonian,
     PairScaling,
@@ -49,6 +50,13 @@ def polynomial(count: int, degree: int, kind: str = "all", seed: int = 0) -> Pol
     return PolynomialHamiltonian(coefficients, SCALING, **states(count), exponents=exponents)
 
 
+def even_network(count: int, neurons: int, activation: str, seed: int = 0) -> EvenHNN:
+    """A network of products."""
+    size = sum(math.prod(shape) for shape in EvenHNN.shapes(count, neurons))
+    parameters = np.random.default_rng(seed).normal(size=size)
+    return EvenHNN(parameters, SCALING, **states(count), hidden=(neurons,), activation=activation)
+
+
 HAMILTONIANS = {
     "one layer": network(HNN, 2, (9,), "softplus"),
     "two layers": network(HNN, 2, (7, 5), "half_log"),
@@ -56,6 +64,8 @@ HAMILTONIANS = {
     "polynomial": polynomial(4, 5),
     "mechanical": polynomial(2, 7, "mechanical"),
     "even": polynomial(2, 8, "even"),
+    "even network": even_network(2, 5, "half_log"),
+    "even network of three pairs": even_network(6, 7, "softplus"),
 }
 PAIRS = PairScaling(q=(0.6, 2.0, 0.1), action=3.6, energy=40.0)
 

@@ -11,6 +11,7 @@ from flexsurr.surrogates.monomials import (
     factors,
     monomials_to_degree,
     products,
+    runs,
 )
 
 
@@ -59,6 +60,24 @@ def test_factors_rebuild_a_set_from_itself(parity):
     for parent, factor in zip(*factors(exponents), strict=True):
         values.append(values[parent] * available[factor])
     np.testing.assert_allclose(values, evaluate_monomials(exponents, x), rtol=1e-14)
+
+
+@pytest.mark.parametrize(("parity", "pieces"), [("all", 6 * 5 + 3), ("even", 6 * 3)])
+def test_runs_rebuild_a_set_in_one_piece_for_each_factor_and_degree(parity, pieces):
+    """Degrees 1 to 6 of three variables: of degree 1 three variables, of each other six products."""
+    exponents = np.concatenate([np.zeros((1, 3), dtype=np.int64), monomials_to_degree(3, 6)])
+    if parity == "even":
+        exponents = exponents[exponents.sum(axis=1) % 2 == 0]
+    exponents = exponents[np.r_[0, 1 + np.random.default_rng(0).permutation(len(exponents) - 1)]]
+    exponents = exponents[np.argsort(exponents.sum(axis=1), kind="stable")]
+    x = np.array([1.3, -0.4, 0.7])
+    available = np.concatenate([x, np.outer(x, x)[np.tril_indices(3)]])
+    order, found = runs(exponents)
+    assert len(found) == pieces
+    values = np.ones(len(exponents))
+    for factor, parent, first, length in found.astype(int):
+        values[first : first + length] = values[parent : parent + length] * available[factor]
+    np.testing.assert_allclose(values, evaluate_monomials(exponents[order], x), rtol=1e-14)
 
 
 @pytest.mark.parametrize(
