@@ -174,6 +174,10 @@ def _port_hamiltonian(surrogate: PortHamiltonian, put: Put) -> Field:
     """The scaled rates of a port-Hamiltonian surrogate, (n, 2r) -> (n, 2r)."""
     mass_matrix = _mass_matrix(surrogate, put)
     stiffness, damping = put(surrogate.scaled_stiffness), put(surrogate.scaled_damping)
+    potential, springs = surrogate.potential, None
+    if potential is not None:
+        lowered, coefficients = potential.gradient_terms
+        springs = _polynomials(put(lowered), put(coefficients))
 
     def rates(x: Tensor) -> Tensor:
         q, p = x.detach().chunk(2, dim=1)
@@ -182,7 +186,10 @@ def _port_hamiltonian(surrogate: PortHamiltonian, put: Put) -> Field:
         velocities = torch.linalg.solve(mass.detach(), p[..., None])[..., 0]
         kinetic = 0.5 * torch.einsum("ni,nij,nj->", velocities, mass, velocities)
         (gyroscopic,) = torch.autograd.grad(kinetic, q)
-        return torch.cat([velocities, gyroscopic - q.detach() @ stiffness - velocities @ damping], dim=1)
+        forces = gyroscopic - q.detach() @ stiffness - velocities @ damping
+        if springs is not None:
+            forces = forces - springs(q.detach())
+        return torch.cat([velocities, forces], dim=1)
 
     return rates
 

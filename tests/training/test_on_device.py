@@ -1,5 +1,7 @@
 """Ensembles by torch, on the CPU, are those of compiled code."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -17,6 +19,7 @@ from flexsurr.surrogates import (
 )
 from flexsurr.surrogates.monomials import monomials_to_degree
 from flexsurr.surrogates.packed import pack
+from flexsurr.surrogates.potential import Potential
 from flexsurr.training import on_device
 from flexsurr.training.on_device import rates_on_device, simulate_on_device
 
@@ -47,6 +50,7 @@ def port_network(even):
     )
 
 
+POTENTIAL = Potential(np.array([[1, 0], [2, 1], [0, 4]]), np.array([0.3, -0.2, 0.5]))
 EXPONENTS = np.array([[2, 0], [0, 2], [2, 2], [4, 0]])
 POLYNOMIAL = PolynomialHamiltonian(np.array([1.0, 1.0, 0.2, 0.3]), SCALING, **ONE, exponents=EXPONENTS)
 SURROGATES = {
@@ -57,6 +61,7 @@ SURROGATES = {
     "port-Hamiltonian polynomial": port_polynomial(),
     "port-Hamiltonian network": port_network(even=False),
     "even port-Hamiltonian network": port_network(even=True),
+    "port-Hamiltonian polynomial with a potential": replace(port_polynomial(), potential=POTENTIAL),
 }
 STEP = Integrator(method="dop853_fixed", step_s=0.002)
 T = np.array([0.0, 0.005, 0.02])
