@@ -12,7 +12,7 @@ from flexsurr.config.history import Sine
 from flexsurr.config.load import TipForce
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import InitialConditions, Reduction
-from flexsurr.library import ANY_STIFFNESS, COMPILED_STIFF, Kept, OutOfRange
+from flexsurr.library import ANY_STIFFNESS, Kept, OutOfRange
 from flexsurr.simulation import simulate
 from flexsurr.surrogates import SurrogateFileError, save
 from flexsurr.training.configuration_samples import configuration_samples
@@ -135,15 +135,18 @@ def test_what_it_cannot_do_is_said(strip, values, message):
 STARTS = np.random.default_rng(0).uniform(0.2, 0.8, (5, 4)) * [1.0, 1.0, 0.0, 0.0]
 
 
-def test_an_ensemble_is_what_its_responses_are(strip):
+def test_an_ensemble_is_what_its_responses_are(strip, monkeypatch):
+    # a method that nothing has to be compiled for; the next test but one takes the compiled one
+    monkeypatch.setattr("flexsurr.library.REFERENCE", ANY_STIFFNESS)
     x0 = STARTS * strip.saved.high
-    settings = {"duration_s": 0.2, "load": LOAD, "integrator": COMPILED_STIFF}
+    settings = {"duration_s": 0.2, "load": LOAD, "integrator": ANY_STIFFNESS}
     each = [strip.simulate(initial=start, **settings) for start in x0]
     kept = {k: strip.simulate_ensemble(initial=x0, keep=k, **settings) for k in get_args(Kept)}
     np.testing.assert_array_equal(kept["states"].kept, [response.x for response in each])
     np.testing.assert_array_equal(kept["tip"].kept, [response.tip for response in each])
-    np.testing.assert_allclose(kept["final"].kept, [response.x[-1] for response in each], rtol=1e-12)
-    np.testing.assert_allclose(kept["final_tip"].kept, [response.tip[-1] for response in each], rtol=1e-12)
+    # the final ones are asked for without samples between, where SciPy's method interpolates
+    np.testing.assert_allclose(kept["final"].kept, [response.x[-1] for response in each], atol=1e-6)
+    np.testing.assert_allclose(kept["final_tip"].kept, [response.tip[-1] for response in each], atol=1e-6)
     assert kept["tip_error"].kept.shape == (5,)
     assert np.all(kept["tip_error"].kept < 0.1)
     assert np.all(kept["tip_error"].kept > 0.0)
@@ -151,9 +154,10 @@ def test_an_ensemble_is_what_its_responses_are(strip):
 
 def test_each_response_of_an_ensemble_may_have_a_load(strip):
     x0 = STARTS[:2] * strip.saved.high
-    found = strip.simulate_ensemble(initial=x0, duration_s=0.2, load=[None, LOAD])
+    settings = {"duration_s": 0.2, "integrator": ANY_STIFFNESS}
+    found = strip.simulate_ensemble(initial=x0, load=[None, LOAD], **settings)
     for load, start, final in zip([None, LOAD], x0, found.kept, strict=True):
-        one = strip.simulate(initial=start, duration_s=0.2, step_s=0.2, load=load, integrator=COMPILED_STIFF)
+        one = strip.simulate(initial=start, step_s=0.2, load=load, **settings)
         np.testing.assert_array_equal(final, one.x[-1])
 
 
