@@ -94,8 +94,8 @@ docs: $(INSTALLED)
 audit: $(INSTALLED)
 	python .ci/audit.py --advisories $(ADVISORIES) environment.txt
 
-# MLflow's page opens on its view of language models, but for an address that says otherwise.
-MODEL_TRAINING := \#/experiments?workflowType=machine_learning
+# MLflow's page opens on its view of language models, but for an address that says otherwise: the first study's runs.
+MODEL_TRAINING := \#/experiments/1/runs?workflowType=machine_learning
 
 ui: $(INSTALLED)
 	@test -f results/mlflow/mlflow.db || { echo "no runs yet: make reproduce first"; exit 1; }
