@@ -1,6 +1,6 @@
 """Ensembles by torch, on a device: the same methods and tableaus, thousands of trajectories at once.
 
-For a graphics processor. On a CPU compiled code is ten times as fast; the tests run this there all the same.
+For a graphics processor; the tests run it on a CPU, where compiled code is what to use.
 """
 
 from collections.abc import Callable
