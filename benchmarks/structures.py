@@ -46,7 +46,7 @@ BEND = {
     "bending_stiffness_out_of_plane_N_m2": 1e7 / 12.0,
     "torsional_stiffness_N_m2": 1e7 / 12.0,
     "axial_stiffness_N": 1e7,
-    "along_span": AlongSpan(s_m=(0.0, 25.0 * np.pi), axis_psi_deg=(0.0, 45.0)),
+    "along_span": AlongSpan(stations_m=(0.0, 25.0 * np.pi), axis_psi_deg=(0.0, 45.0)),
 }
 
 
@@ -83,10 +83,10 @@ def costs() -> None:
     wing = read_structure(STRUCTURES / "wing.yaml")
     values = wing.model_dump()
     share = np.array([0.0, 0.5, 1.0])
-    table = AlongSpan(s_m=tuple(16.0 * share), mass_per_length_kg_m=tuple(1.0 - 0.5 * share))
+    table = AlongSpan(stations_m=tuple(16.0 * share), mass_per_length_kg_m=tuple(1.0 - 0.5 * share))
     varying = {**values, "mass_per_length_kg_m": None, "along_span": table}
     cantilever = read_structure(STRUCTURES / "cantilever.yaml")
-    taper = AlongSpan(s_m=tuple(share), mass_per_length_kg_m=tuple(0.3 - 0.2 * share))
+    taper = AlongSpan(stations_m=tuple(share), mass_per_length_kg_m=tuple(0.3 - 0.2 * share))
     cases = {
         "cantilever, 1 mode": (cantilever, 1),
         "with properties along the span, 1 mode": (

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexsurr.beam.span import axis_at, integral, property_at, section_axes
-from flexsurr.config.along_span import PointMass
+from flexsurr.config.along_span import FixedMass
 from flexsurr.config.structure import JOINTS, STIFFNESS_KEY, Joint, Structure
 from flexsurr.simulation.rhs import Array
 
@@ -198,7 +198,7 @@ def _sections(structure: Structure, frames: Array) -> tuple[Array, Array, Array]
     )
 
 
-def _fixed_to(structure: Structure, body: PointMass, element: int, frames: Array) -> tuple[Array, Array]:
+def _fixed_to(structure: Structure, body: FixedMass, element: int, frames: Array) -> tuple[Array, Array]:
     """Centre of gravity (3,) [m] and inertia (3, 3) [kg m²] of a body in the frame of its element."""
     root = structure.length_m / structure.elements * element
     axes = section_axes(structure, np.array([body.at_m]))[0]

@@ -24,7 +24,7 @@ def property_at(structure: Structure, key: str, s: Array) -> Array:
         values = getattr(table, key)
     if table is None or len(values) == 1:
         return np.full(len(s), 0.0 if values[0] is None else float(values[0]))
-    stations, column = np.array(table.s_m), np.array(values)
+    stations, column = np.array(table.stations_m), np.array(values)
     after = np.clip(np.searchsorted(stations, s, side="right"), 1, len(stations) - 1)
     before = after - 1
     if table.interpolation == "constant":
@@ -37,7 +37,7 @@ def property_at(structure: Structure, key: str, s: Array) -> Array:
 
 def integral(structure: Structure, of: Callable[[Array], Array], ends: Array) -> Array:
     """(k, …) ∫ of(s) ds from each of `ends` (k + 1,) [m] to the next; `of` takes s (m,), gives (m, …)."""
-    stations = () if structure.along_span is None else structure.along_span.s_m
+    stations = () if structure.along_span is None else structure.along_span.stations_m
     cuts = np.unique(np.concatenate([ends, np.clip(stations, ends[0], ends[-1])]))
     half = 0.5 * np.diff(cuts)
     points = (cuts[:-1] + half)[:, None] + half[:, None] * _POINTS

@@ -32,7 +32,7 @@ class AlongSpan(Record):
     """Between stations. constant: from each station on to the next, so that the values of the last have no
     effect. Two stations at one place are a jump.
     """
-    s_m: tuple[float, ...] = ()
+    stations_m: tuple[float, ...] = ()
     """The stations: lengths along the axis from the clamp [m], ascending, from 0 to the structure's length.
     """
     mass_per_length_kg_m: tuple[Positive, ...] | None = None
@@ -68,15 +68,19 @@ class AlongSpan(Record):
     def _a_value_at_every_station(self) -> Self:
         if self.file is not None:
             raise ValueError(f"file: {self.file!r} is read with the file of a structure alone")
-        if len(self.s_m) < 2:
-            raise ValueError(f"s_m: {len(self.s_m)} stations; allowed: 2 or more")
-        for before, here in pairwise(self.s_m):
-            if here < before or self.s_m.count(here) > 2:
-                raise ValueError(f"s_m: {here:g} after {before:g}; allowed: ascending, at a jump twice")
+        if len(self.stations_m) < 2:
+            raise ValueError(f"stations_m: {len(self.stations_m)} stations; allowed: 2 or more")
+        for before, here in pairwise(self.stations_m):
+            if here < before or self.stations_m.count(here) > 2:
+                raise ValueError(
+                    f"stations_m: {here:g} after {before:g}; allowed: ascending, at a jump twice"
+                )
         for key in self.given:
             count = len(getattr(self, key))
-            if count != len(self.s_m):
-                raise ValueError(f"{key}: {count} values; allowed: {len(self.s_m)}, one for each station s_m")
+            if count != len(self.stations_m):
+                raise ValueError(
+                    f"{key}: {count} values; allowed: {len(self.stations_m)}, one for each station stations_m"
+                )
         return self
 
     @property
@@ -91,19 +95,19 @@ class AlongSpan(Record):
 
     def check_covers(self, length_m: float) -> None:
         """ValueError unless the stations go from 0 to `length_m`."""
-        ends = self.s_m[0], self.s_m[-1]
+        ends = self.stations_m[0], self.stations_m[-1]
         if abs(ends[0]) > _ROUNDING * length_m or abs(ends[1] - length_m) > _ROUNDING * length_m:
             raise ValueError(
-                f"along_span: s_m: goes from {ends[0]:g} to {ends[1]:g} m; allowed: 0 to {length_m:g} m, "
-                "the whole span"
+                f"along_span: stations_m: goes from {ends[0]:g} to {ends[1]:g} m; allowed: "
+                f"0 to {length_m:g} m, the whole span"
             )
 
 
 AXIS_KEYS = ("axis_psi_deg", "axis_theta_deg", "axis_phi_deg")
-COLUMNS = tuple(key for key in AlongSpan.model_fields if key not in ("file", "interpolation", "s_m"))
+COLUMNS = tuple(key for key in AlongSpan.model_fields if key not in ("file", "interpolation", "stations_m"))
 
 
-class PointMass(Record):
+class FixedMass(Record):
     """A body fixed to the structure, such as an engine: it moves with the element that holds it."""
 
     name: str = ""
@@ -162,7 +166,7 @@ def _read_csv(path: Path, shown: str) -> dict[str, list[float]]:
     ]
     if not rows:
         raise ConfigurationError([f"{shown}: is empty; allowed: a line of names, then numbers"])
-    names, known = rows[0][1], ("s_m", *COLUMNS)
+    names, known = rows[0][1], ("stations_m", *COLUMNS)
     problems = [
         f"{shown}: {name}: unknown column{nearest(name, known)}; allowed: {', '.join(known)}"
         for name in names

@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
-from flexsurr.config.along_span import AlongSpan, PointMass
+from flexsurr.config.along_span import AlongSpan, FixedMass
 from flexsurr.config.along_span import NotNegative as NotNegative
 from flexsurr.config.along_span import Positive as Positive
 from flexsurr.config.schema import Record
@@ -64,7 +64,7 @@ class Structure(Record):
     """
     along_span: AlongSpan | None = None
     """Properties that vary along the span, and an axis that is not straight. None: all are constant."""
-    point_masses: tuple[PointMass, ...] = ()
+    point_masses: tuple[FixedMass, ...] = ()
     """Bodies fixed to it."""
     joint_rotation: Literal["vector", "sequence"] = "vector"
     """How an element turns at its joints. vector: by one rotation, of components ψ about z, θ about −y and φ
@@ -137,7 +137,7 @@ class Structure(Record):
 
     def _check_sections(self) -> None:
         """At every station, or once where nothing varies."""
-        count = 1 if self.along_span is None else len(self.along_span.s_m)
+        count = 1 if self.along_span is None else len(self.along_span.stations_m)
         rows = zip(
             *(
                 values * count if len(values) == 1 else values

@@ -7,7 +7,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from flexsurr.beam import ModalBasis, mass_matrix, reduce
-from flexsurr.config.along_span import AlongSpan, PointMass
+from flexsurr.config.along_span import AlongSpan, FixedMass
 from flexsurr.config.load import DistributedForce, Spread, TipForce
 from flexsurr.config.structure import JOINTS, Structure
 from flexsurr.config.study import Reduction
@@ -43,7 +43,7 @@ ALL_JOINTS = Structure(
 )
 
 TAPER = AlongSpan(
-    s_m=(0.0, 0.5, 1.2),
+    stations_m=(0.0, 0.5, 1.2),
     mass_per_length_kg_m=(0.5, 0.4, 0.2),
     bending_stiffness_out_of_plane_N_m2=(60.0, 50.0, 20.0),
     torsional_inertia_per_length_kg_m=(0.02, 0.01, 0.005),
@@ -51,7 +51,7 @@ TAPER = AlongSpan(
 """A beam that gets lighter and softer outwards, at its end less so."""
 
 BEND = AlongSpan(
-    s_m=(0.0, 0.5, 1.2),
+    stations_m=(0.0, 0.5, 1.2),
     mass_per_length_kg_m=(0.5, 0.4, 0.2),
     torsional_inertia_per_length_kg_m=(0.02, 0.01, 0.005),
     inertia_about_y_per_length_kg_m=(0.004, 0.003, 0.001),
@@ -64,7 +64,7 @@ BEND = AlongSpan(
 )
 """Everything that may vary does; its axis is swept, bent and twisted."""
 
-ENGINE = PointMass(
+ENGINE = FixedMass(
     at_m=0.7,
     mass_kg=0.2,
     offset_m=(0.05, 0.02, -0.1),

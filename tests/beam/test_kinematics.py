@@ -132,11 +132,15 @@ def test_an_unloaded_axis_follows_its_table():
     psi, theta, phi = (
         np.array([*values]) for values in (BEND.axis_psi_deg, BEND.axis_theta_deg, BEND.axis_phi_deg)
     )
-    at = np.interp(0.75, BEND.s_m, psi), np.interp(0.75, BEND.s_m, theta), np.interp(0.75, BEND.s_m, phi)
+    at = (
+        np.interp(0.75, BEND.stations_m, psi),
+        np.interp(0.75, BEND.stations_m, theta),
+        np.interp(0.75, BEND.stations_m, phi),
+    )
     clamp = change(STRAIGHT, elements=1, clamp_psi_deg=at[0], clamp_theta_deg=at[1], clamp_phi_deg=at[2])
     np.testing.assert_allclose(frames[25], element_frames(clamp, np.zeros(4))[0], atol=1e-14)
     s = np.linspace(0.0, 1.2, 20001)
-    angles = np.deg2rad([np.interp(s, BEND.s_m, values) for values in (psi, theta)])
+    angles = np.deg2rad([np.interp(s, BEND.stations_m, values) for values in (psi, theta)])
     x = np.array(
         [np.cos(angles[0]) * np.cos(angles[1]), np.sin(angles[0]) * np.cos(angles[1]), np.sin(angles[1])]
     )

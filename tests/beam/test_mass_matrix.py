@@ -31,7 +31,7 @@ def test_all_mass_is_there_and_nothing_else():
         for elements in (1, 7):
             structure = change(ALL_JOINTS, **form, elements=elements)
             table = structure.along_span
-            total = 0.4 * 1.2 if table is None else np.trapezoid(table.mass_per_length_kg_m, table.s_m)
+            total = 0.4 * 1.2 if table is None else np.trapezoid(table.mass_per_length_kg_m, table.stations_m)
             total += 0.2 if structure.point_masses else 0.0
             assert chain(structure).masses.sum() == pytest.approx(total, rel=1e-12)
 

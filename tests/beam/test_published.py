@@ -6,7 +6,7 @@ from scipy.optimize import brentq
 from structures import CANTILEVER, change
 
 from flexsurr.beam import find_equilibrium, natural_modes, tip_position
-from flexsurr.config.along_span import AlongSpan, PointMass
+from flexsurr.config.along_span import AlongSpan, FixedMass
 from flexsurr.config.load import TipForce
 from flexsurr.config.structure import Structure
 
@@ -69,7 +69,7 @@ def bend(elements, joint_rotation="vector"):
         bending_stiffness_out_of_plane_N_m2=modulus / 12.0,
         torsional_stiffness_N_m2=modulus / 2.0 / 6.0,
         axial_stiffness_N=modulus,
-        along_span=AlongSpan(s_m=(0.0, length), axis_psi_deg=(0.0, 45.0)),
+        along_span=AlongSpan(stations_m=(0.0, length), axis_psi_deg=(0.0, 45.0)),
     )
 
 
@@ -129,7 +129,7 @@ def test_a_tip_mass_has_the_frequencies_of_its_characteristic_equation(share):
         elements=32,
         joint_rotation="vector",
         rotary_inertia="exact",
-        point_masses=(PointMass(at_m=1.0, mass_kg=share * 0.2),),
+        point_masses=(FixedMass(at_m=1.0, mass_kg=share * 0.2),),
     )
     omega, _ = natural_modes(structure, np.zeros(32))
     roots = [brentq(characteristic, k * np.pi + 1e-6, (k + 1) * np.pi) for k in range(3)]
@@ -151,7 +151,7 @@ def test_a_tapered_beams_frequencies(narrowing):
         mass_per_length_kg_m=None,
         bending_stiffness_out_of_plane_N_m2=None,
         along_span=AlongSpan(
-            s_m=tuple(share),
+            stations_m=tuple(share),
             mass_per_length_kg_m=tuple(width * thickness),
             bending_stiffness_out_of_plane_N_m2=tuple(width * thickness**3),  # E / (12 ρ) = 1
         ),
@@ -162,7 +162,7 @@ def test_a_tapered_beams_frequencies(narrowing):
 
 def test_a_table_of_one_value_is_that_value():
     table = AlongSpan(
-        s_m=(0.0, 0.3, 0.3, 1.0),
+        stations_m=(0.0, 0.3, 0.3, 1.0),
         mass_per_length_kg_m=(0.2,) * 4,
         bending_stiffness_out_of_plane_N_m2=(50.0,) * 4,
     )
@@ -179,11 +179,12 @@ def test_a_stepped_beam_is_stepped_where_its_table_says():
         CANTILEVER,
         mass_per_length_kg_m=None,
         along_span=AlongSpan(
-            interpolation="constant", s_m=(0.0, 0.33, 1.0), mass_per_length_kg_m=(0.3, 0.1, 9.0)
+            interpolation="constant", stations_m=(0.0, 0.33, 1.0), mass_per_length_kg_m=(0.3, 0.1, 9.0)
         ),
     )
     jump = change(
-        steps, along_span=AlongSpan(s_m=(0.0, 0.33, 0.33, 1.0), mass_per_length_kg_m=(0.3, 0.3, 0.1, 0.1))
+        steps,
+        along_span=AlongSpan(stations_m=(0.0, 0.33, 0.33, 1.0), mass_per_length_kg_m=(0.3, 0.3, 0.1, 0.1)),
     )
     one, other = (natural_modes(each, np.zeros(10))[0] for each in (steps, jump))
     np.testing.assert_allclose(one, other, rtol=1e-12)

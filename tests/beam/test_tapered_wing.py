@@ -24,7 +24,7 @@ def test_its_files_make_a_sound_structure():
     assert unit_hint(WING) == ""
     table = WING.along_span
     assert chain(WING).masses.sum() == pytest.approx(
-        14.0 + np.trapezoid(table.mass_per_length_kg_m, table.s_m)
+        14.0 + np.trapezoid(table.mass_per_length_kg_m, table.stations_m)
     )
     sag = tip_position(WING, find_equilibrium(WING)) - tip_position(WING, np.zeros(WING.coordinates))
     assert -0.01 * WING.length_m < sag[2] < 0.0

@@ -16,7 +16,7 @@ BEAM = {
     "torsional_stiffness_N_m2": 20.0,
     "torsional_inertia_per_length_kg_m": 0.01,
 }
-TABLE = {"s_m": [0.0, 0.5, 2.0], "mass_per_length_kg_m": [0.4, 0.3, 0.1]}
+TABLE = {"stations_m": [0.0, 0.5, 2.0], "mass_per_length_kg_m": [0.4, 0.3, 0.1]}
 
 
 def written(folder, values):
@@ -28,7 +28,7 @@ def written(folder, values):
 def test_a_table_may_stand_in_the_file_or_in_a_csv_beside_it(tmp_path):
     inside = read_structure(written(tmp_path, {**BEAM, "along_span": TABLE}))
     (tmp_path / "table.csv").write_text(
-        "# of a drawing\ns_m, mass_per_length_kg_m\n0, 0.4\n0.5, 0.3\n\n2, 0.1\n"
+        "# of a drawing\nstations_m, mass_per_length_kg_m\n0, 0.4\n0.5, 0.3\n\n2, 0.1\n"
     )
     beside = read_structure(written(tmp_path, {**BEAM, "along_span": {"file": "table.csv"}}))
     assert beside == inside
@@ -43,11 +43,20 @@ def with_table(**values):
     ("values", "parts"),
     [
         (BEAM, ["mass_per_length_kg_m: needed, here or in along_span"]),
-        (with_table(s_m=[0.0, 0.5, 1.5]), ["along_span: s_m", "0 to 1.5 m", "allowed: 0 to 2 m"]),
-        (with_table(s_m=[0.1, 0.5, 2.0]), ["along_span: s_m", "0.1 to 2 m", "allowed: 0 to 2 m"]),
-        (with_table(s_m=[0.0, 500.0, 2000.0]), ["along_span: s_m", "0 to 2000 m", "allowed: 0 to 2 m"]),
-        (with_table(s_m=[0.0, 0.5, 0.4]), ["along_span", "s_m: 0.4 after 0.5", "ascending"]),
-        (with_table(s_m=[0.0, 2.0]), ["along_span", "mass_per_length_kg_m: 3 values", "allowed: 2"]),
+        (
+            with_table(stations_m=[0.0, 0.5, 1.5]),
+            ["along_span: stations_m", "0 to 1.5 m", "allowed: 0 to 2 m"],
+        ),
+        (
+            with_table(stations_m=[0.1, 0.5, 2.0]),
+            ["along_span: stations_m", "0.1 to 2 m", "allowed: 0 to 2 m"],
+        ),
+        (
+            with_table(stations_m=[0.0, 500.0, 2000.0]),
+            ["along_span: stations_m", "0 to 2000 m", "allowed: 0 to 2 m"],
+        ),
+        (with_table(stations_m=[0.0, 0.5, 0.4]), ["along_span", "stations_m: 0.4 after 0.5", "ascending"]),
+        (with_table(stations_m=[0.0, 2.0]), ["along_span", "mass_per_length_kg_m: 3 values", "allowed: 2"]),
         (
             with_table(mass_per_length_kg_m=[0.4, -0.3, 0.1]),
             ["along_span.mass_per_length_kg_m[1]", "-0.3", "greater than 0"],
@@ -97,11 +106,17 @@ def test_a_mistake_is_one_line_with_its_key(tmp_path, values, parts):
     [
         (None, ["table.csv: cannot be read"]),
         ("", ["table.csv: is empty"]),
-        ("s_m,mass_per_length\n0,1\n2,1\n", ["mass_per_length: unknown column", "'mass_per_length_kg_m'"]),
-        ("s_m,mass_per_length_kg_m\n0,1\n2,heavy\n", ["line 3: mass_per_length_kg_m: 'heavy'", "a number"]),
-        ("s_m,mass_per_length_kg_m\n0,1\n2\n", ["line 3: 1 values; allowed: 2"]),
-        ("s_m,chord_m\n0,1\n2,1\n", ["mass_per_length_kg_m: needed"]),
-        ("mass_per_length_kg_m\n1\n1\n", ["s_m: 0 stations"]),
+        (
+            "stations_m,mass_per_length\n0,1\n2,1\n",
+            ["mass_per_length: unknown column", "'mass_per_length_kg_m'"],
+        ),
+        (
+            "stations_m,mass_per_length_kg_m\n0,1\n2,heavy\n",
+            ["line 3: mass_per_length_kg_m: 'heavy'", "a number"],
+        ),
+        ("stations_m,mass_per_length_kg_m\n0,1\n2\n", ["line 3: 1 values; allowed: 2"]),
+        ("stations_m,chord_m\n0,1\n2,1\n", ["mass_per_length_kg_m: needed"]),
+        ("mass_per_length_kg_m\n1\n1\n", ["stations_m: 0 stations"]),
     ],
 )
 def test_so_is_one_in_a_csv_file(tmp_path, text, parts):

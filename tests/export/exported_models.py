@@ -67,7 +67,9 @@ WING = Structure(
 WINGS = {
     "wing_in_sequence": WING.model_copy(update={"joint_rotation": "sequence"}),
     "wing_bent": WING.model_copy(
-        update={"along_span": AlongSpan(s_m=(0.0, 2.0), axis_psi_deg=(20.0, 50.0), axis_phi_deg=(0.0, 9.0))}
+        update={
+            "along_span": AlongSpan(stations_m=(0.0, 2.0), axis_psi_deg=(20.0, 50.0), axis_phi_deg=(0.0, 9.0))
+        }
     ),
 }
 
