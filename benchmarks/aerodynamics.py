@@ -26,7 +26,7 @@ from flexsurr.simulation.mapping import CompiledMapping, evaluate_mapping
 from flexsurr.surrogates import Intervals, NetworkMap
 from flexsurr.training.initialisation import initial_weights
 from flexsurr.training.networks import TorchMap
-from flexsurr.training.structured_normal_equations import MapObjective
+from flexsurr.training.one_hidden_layer import OneHiddenLayer
 
 AIRCRAFT = Path(__file__).parents[1] / "config" / "aircraft"
 HIDDEN = 75
@@ -87,7 +87,7 @@ def main() -> None:
     generator = np.random.default_rng(0)
     x = generator.uniform(-1.0, 1.0, (SAMPLES, len(FEATURES)))
     y = generator.uniform(-1.0, 1.0, (SAMPLES, len(COEFFICIENTS)))
-    objective = MapObjective.of(x, y, HIDDEN, "tanh")
+    objective = OneHiddenLayer.of_map(x, y, HIDDEN, "tanh")
     timing = measure(
         "training of the airliner",
         "normal equations",

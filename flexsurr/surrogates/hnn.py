@@ -14,7 +14,7 @@ from flexsurr.simulation.dimension import LANES
 from flexsurr.simulation.rhs import FLOATING_POINT, Array, implements_rhs
 from flexsurr.simulation.side_by_side import implements_rhs_of_block
 from flexsurr.surrogates.activations import slope, two_slopes, value
-from flexsurr.surrogates.layers import Shapes, back, forward, offset
+from flexsurr.surrogates.layers import Dense, Shapes, back, forward, offset
 from flexsurr.surrogates.network import Network
 from flexsurr.surrogates.scaling import FeatureScaling, scaled_kernel, scaled_states
 from flexsurr.surrogates.surrogate import symplectic
@@ -33,29 +33,18 @@ class ScalarNetworks(Network):
         """A vector c."""
         return [(neurons,)]
 
-    def _hidden_layers(self, x: Array, layers: list[Array]) -> tuple[Array, list[Array]]:
-        """Arguments of the last layer's σ, and the slopes σ′ of the layers before it."""
-        slopes: list[Array] = []
-        z = x @ layers[0] + layers[1]
-        for weights, biases in zip(layers[2::2], layers[3::2], strict=True):
-            slopes.append(self.sigma.slope(z))
-            z = self.sigma.value(z) @ weights + biases
-        return z, slopes
+    def scalar(self, number: int) -> Dense:
+        """Scalar `number` of scaled states, as its single output."""
+        *hidden, readout = self.network_arrays(number)
+        return Dense(self.sigma, hidden, readout[:, None])
 
     def scaled_scalar(self, x: Array, number: int) -> Array:
         """Scalar `number` of scaled states, (..., 2r) -> (...)."""
-        *layers, readout = self.network_arrays(number)
-        z, _ = self._hidden_layers(x, layers)
-        return self.sigma.value(z) @ readout
+        return self.scalar(number)(x)[..., 0]
 
     def scaled_gradient(self, x: Array, number: int) -> Array:
-        """Gradient of scalar `number` at scaled states, (..., 2r) -> (..., 2r), by a sweep back."""
-        *layers, readout = self.network_arrays(number)
-        z, slopes = self._hidden_layers(x, layers)
-        gradient = (self.sigma.slope(z) * readout) @ layers[-2].T
-        for weights, slopes_before in zip(layers[-4::-2], reversed(slopes), strict=True):
-            gradient = (gradient * slopes_before) @ weights.T
-        return gradient
+        """Gradient of scalar `number` at scaled states, (..., 2r) -> (..., 2r)."""
+        return self.scalar(number).jacobian(x)[..., 0, :]
 
     def energy(self, x: Array) -> Array:
         """H(x) − H(0), (..., 2r) -> (...), in the product of the units of q and p per second.

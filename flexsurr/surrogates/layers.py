@@ -1,4 +1,4 @@
-"""Fully connected layers: where their weights lie in one vector, and compiled code for them, forth and back.
+"""Dense networks: in NumPy, where their weights lie in one vector, compiled code for layers forth and back.
 
 In compiled code everything passed between layers lies in one workspace; layers are offsets into it and into
 the weights. Offsets and counters are unsigned: numba lets a signed index be negative, and a loop in which
@@ -9,11 +9,13 @@ reference to an array costs as much as a layer.
 import itertools
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
 from flexsurr.simulation.rhs import FLOATING_POINT, Array
+from flexsurr.surrogates.activations import ActivationFunction
 
 Shapes = list[tuple[int, ...]]
 
@@ -35,6 +37,39 @@ def views(parameters: Array, shapes: Shapes) -> list[Array]:
     """Views of the vector `parameters`, which holds arrays of these shapes one after the other."""
     pieces = np.split(parameters, np.cumsum([math.prod(shape) for shape in shapes[:-1]]))
     return [piece.reshape(shape) for piece, shape in zip(pieces, shapes, strict=True)]
+
+
+class Dense(NamedTuple):
+    """y = σ(… σ(x W₁ + b₁) …) V + c: hidden layers of one activation, then a linear readout.
+
+    `hidden` holds W₁ (n, m₁), b₁ (m₁,), W₂, b₂ and so on, `readout` V (m, k) and `constants` c (k,).
+    """
+
+    sigma: ActivationFunction
+    hidden: Sequence[Array]
+    readout: Array
+    constants: Array | float = 0.0
+
+    def _arguments(self, x: Array) -> list[Array]:
+        """What σ is taken of in each hidden layer."""
+        arguments = [x @ self.hidden[0] + self.hidden[1]]
+        for weights, biases in zip(self.hidden[2::2], self.hidden[3::2], strict=True):
+            arguments.append(self.sigma.value(arguments[-1]) @ weights + biases)
+        return arguments
+
+    def __call__(self, x: Array) -> Array:
+        """The outputs, (..., n) -> (..., k)."""
+        y: Array = self.sigma.value(self._arguments(x)[-1]) @ self.readout + self.constants
+        return y
+
+    def jacobian(self, x: Array) -> Array:
+        """∂(outputs)/∂(inputs), (..., n) -> (..., k, n), by a sweep back."""
+        jacobian = self.readout.T
+        for weights, z in zip(self.hidden[-2::-2], reversed(self._arguments(x)), strict=True):
+            scaled = jacobian * self.sigma.slope(z)[..., None, :]
+            # as one product, not one for each of the inputs
+            jacobian = (scaled.reshape(-1, len(weights.T)) @ weights.T).reshape(*scaled.shape[:-1], -1)
+        return jacobian
 
 
 @njit(fastmath=FLOATING_POINT, error_model="numpy")
@@ -59,6 +94,15 @@ def back(parameters, layer, n, m, work, z, inputs):
         for k in range(m):
             total += parameters[row + k] * work[z + k]
         work[inputs + j] = total
+
+
+@njit(fastmath=FLOATING_POINT, error_model="numpy")
+def read(weights, row, work, first, count):
+    """Σ_k V_k a_k, an output of a readout: `count` weights from `row` on, and values from `first` on."""
+    total = 0.0
+    for k in range(count):
+        total += weights[row + k] * work[first + k]
+    return total
 
 
 @njit(error_model="numpy")

@@ -9,7 +9,7 @@ from flexsurr.simulation.dimension import LANES
 from flexsurr.simulation.rhs import Array, implements_rhs
 from flexsurr.simulation.side_by_side import implements_rhs_of_block
 from flexsurr.surrogates.activations import value
-from flexsurr.surrogates.layers import Shapes, forward, layer_shapes, offset
+from flexsurr.surrogates.layers import Dense, Shapes, forward, layer_shapes, offset
 from flexsurr.surrogates.network import Network
 from flexsurr.surrogates.scaling import origins
 
@@ -28,10 +28,8 @@ class MLP(Network):
 
     def scaled_field(self, x: Array) -> Array:
         """The network."""
-        *layers, weights_out, biases_out = self.arrays()
-        for weights, biases in zip(layers[::2], layers[1::2], strict=True):
-            x = self.sigma.value(x @ weights + biases)
-        return x @ weights_out + biases_out
+        *hidden, readout, constants = self.arrays()
+        return Dense(self.sigma, hidden, readout, constants)(x)
 
     def scaled_kernel(self, parameters: Array) -> "MLPKernel":
         """The scaled field with these weights, for compiled code."""

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from flexsurr.simulation.mapping import CompiledMapping, implements_mapping
 from flexsurr.simulation.rhs import Array
 from flexsurr.surrogates.activations import ActivationFunction, activation_function, value
-from flexsurr.surrogates.layers import Shapes, layer_shapes, offset, size_of, views
+from flexsurr.surrogates.layers import Dense, Shapes, forward, layer_shapes, offset, read, size_of, views
 from flexsurr.surrogates.learned_map import Intervals
 
 Pairs = tuple[tuple[int, int], ...]
@@ -73,35 +73,27 @@ class NetworkMap:
         return views(self.parameters, self._shapes)
 
     @cached_property
-    def _folded(self) -> tuple[Array, Array, Array, Array]:
-        """Weights and biases of both layers with all scales in them, but for the origin of the inputs."""
+    def dense(self) -> Dense:
+        """Of u − origin and its products: with all scales in it but for that origin.
+
+        It is subtracted before it meets a weight, so that large inputs cost no digits.
+        """
         weights, biases, weights_out, biases_out = self.layers()
         halves = with_products(self.inputs.half, self.products)
-        return (
-            weights / halves[:, None],
-            biases.copy(),
+        return Dense(
+            self.sigma,
+            (weights / halves[:, None], biases.copy()),
             weights_out * self.outputs.half,
             self.outputs.origin + self.outputs.half * biases_out,
         )
 
-    def _argument(self, u: Array) -> Array:
-        """What σ is taken of, (..., hidden)."""
-        weights, biases, *_ = self._folded
-        # the origin is subtracted before it meets a weight, so that large inputs cost no digits
-        argument: Array = with_products(u - self.inputs.origin, self.products) @ weights + biases
-        return argument
-
     def __call__(self, u: Array) -> Array:
         """Outputs at inputs, (..., n) -> (..., k)."""
-        *_, weights_out, biases_out = self._folded
-        outputs: Array = self.sigma.value(self._argument(u)) @ weights_out + biases_out
-        return outputs
+        return self.dense(with_products(u - self.inputs.origin, self.products))
 
     def jacobian(self, u: Array) -> Array:
         """∂(outputs)/∂(inputs), (..., n) -> (..., k, n)."""
-        weights, _, weights_out, _ = self._folded
-        slopes = self.sigma.slope(self._argument(u))
-        by_all: Array = np.einsum("kn,...n,nm->...mk", weights, slopes, weights_out, optimize=True)
+        by_all = self.dense.jacobian(with_products(u - self.inputs.origin, self.products))
         n = len(self.inputs.names)
         jacobian: Array = by_all[..., :n].copy()
         x = (u - self.inputs.origin)[..., None, :]
@@ -121,19 +113,18 @@ class NetworkMap:
         return self.parameters.size
 
     def compiled(self) -> CompiledMapping:
-        """A loop over neurons for each input and each output."""
-        weights, biases, weights_out, biases_out = self._folded
+        """A layer, and a row of the readout for each output."""
+        sigma, (weights, biases), readout, constants = self.dense
         kernel = NetworkMapKernel(
-            self.sigma.tag,
+            sigma.tag,
             self.inputs.origin,
-            weights,
-            biases,
-            np.ascontiguousarray(weights_out.T),
-            biases_out,
+            np.concatenate([weights.ravel(), biases]),
+            readout.T.ravel(),
+            np.asarray(constants),
             np.array(self.products, dtype=np.int64).reshape(-1, 2),
-            _read_neurons(weights_out),
+            _read_neurons(readout),
         )
-        return CompiledMapping(kernel, self.hidden, self.inputs.names, self.outputs.names)
+        return CompiledMapping(kernel, len(weights) + self.hidden, self.inputs.names, self.outputs.names)
 
     def settings(self) -> dict[str, Any]:
         """Neurons, activation and products."""
@@ -179,42 +170,35 @@ def _read_neurons(weights_out: Array) -> NDArray[np.int64]:
 
 
 class NetworkMapKernel(NamedTuple):
-    """origin (n,), weights (n + P, hidden), biases (hidden,), weights_out (k, hidden), biases_out (k,).
+    """Origin (n,), weights (n + P, hidden) and biases in one `layer`, `readout` (k · hidden,), `constants`.
 
     `products` (P, 2) are pairs of inputs; output i reads the neurons from `reads`[i, 0] to before [i, 1].
     """
 
     activation: NamedTuple
     origin: Array
-    weights: Array
-    biases: Array
-    weights_out: Array
-    biases_out: Array
+    layer: Array
+    readout: Array
+    constants: Array
     products: NDArray[np.int64]
     reads: NDArray[np.int64]
 
 
 @implements_mapping(NetworkMapKernel)
 def _network_map(kernel, u, y, work):
-    activation, origin, weights, biases, weights_out, biases_out, products, reads = kernel
-    # as `layers.forward`, with the neurons at the start of the workspace and the inputs nowhere in it
-    hidden = offset(biases.size)
-    for k in range(hidden):
-        work[k] = biases[k]
-    for j in range(offset(origin.size)):
-        x = u[j] - origin[j]
-        for k in range(hidden):
-            work[k] += x * weights[j, k]
+    activation, origin, layer, readout, constants, products, reads = kernel
+    # work: the inputs and their products, then the neurons
+    n = offset(origin.size)
+    inputs = n + offset(products.shape[0])
+    hidden = offset(readout.size // constants.size)
+    for j in range(n):
+        work[j] = u[j] - origin[j]
     for m in range(offset(products.shape[0])):
-        a, b = products[m, 0], products[m, 1]
-        x = (u[a] - origin[a]) * (u[b] - origin[b])
-        row = offset(origin.size) + m
-        for k in range(hidden):
-            work[k] += x * weights[row, k]
+        work[n + m] = work[products[m, 0]] * work[products[m, 1]]
+    forward(layer, offset(0), inputs, hidden, work, offset(0), inputs)
     for k in range(hidden):
-        work[k] = value(activation, work[k])
-    for i in range(offset(biases_out.size)):
-        total = biases_out[i]
-        for k in range(offset(reads[i, 0]), offset(reads[i, 1])):
-            total += work[k] * weights_out[i, k]
-        y[i] = total
+        work[inputs + k] = value(activation, work[inputs + k])
+    for i in range(offset(constants.size)):
+        first = offset(reads[i, 0])
+        count = offset(reads[i, 1]) - first
+        y[i] = constants[i] + read(readout, i * hidden + first, work, inputs + first, count)

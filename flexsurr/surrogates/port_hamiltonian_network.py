@@ -8,7 +8,7 @@ import numpy as np
 from flexsurr.simulation.linear_solvers import solve_packed
 from flexsurr.simulation.rhs import Array, implements_rhs
 from flexsurr.surrogates.activations import ActivationFunction, activation_function, slope, value
-from flexsurr.surrogates.layers import Shapes, forward, layer_shapes, offset, size_of, views
+from flexsurr.surrogates.layers import Dense, Shapes, forward, layer_shapes, offset, read, size_of, views
 from flexsurr.surrogates.packed import lower, pack, packed_size, symmetric
 from flexsurr.surrogates.port_hamiltonian import PortHamiltonian, springs_and_dampers
 
@@ -84,12 +84,9 @@ class NetworkPortHamiltonian(PortHamiltonian):
         """L (..., r, r) and its derivatives by q̂_k (..., r, r, r), k first."""
         weights, biases, readout, constant, *_ = self.arrays()
         inputs, turned = self._inputs(q)
-        z = inputs @ weights + biases
-        factor = constant + self.sigma.value(z) @ readout.T
-        derivatives = np.einsum(
-            "...ji,ik,...k,ek->...je", turned, weights, self.sigma.slope(z), readout, optimize=True
-        )
-        return lower(factor, self.pairs), lower(derivatives, self.pairs)
+        dense = Dense(self.sigma, (weights, biases), readout.T, constant)
+        derivatives = turned @ np.swapaxes(dense.jacobian(inputs), -1, -2)
+        return lower(dense(inputs), self.pairs), lower(derivatives, self.pairs)
 
     def scaled_mass(self, q: Array) -> Array:
         """M̂ at scaled coordinates, (..., r) -> (..., r, r)."""
@@ -176,11 +173,7 @@ def _network_port_hamiltonian(kernel, t, x, dx, work):
     for k in range(n):
         work[z + k] = slope(activation, work[z + k])
     for e in range(entries):
-        total = constant[e]
-        row = e * n
-        for k in range(n):
-            total += readout[row + k] * work[values + k]
-        work[factor + e] = total
+        work[factor + e] = constant[e] + read(readout, e * n, work, values, n)
     e = offset(0)
     for i in range(r):
         row = factor + i * (i + offset(1)) // offset(2)

@@ -7,6 +7,7 @@ import zipfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, Literal, Protocol
 
 import numpy as np
@@ -209,7 +210,7 @@ def write_checkpoint(folder: Path, belongs_to: dict[str, Any], **states: dict[st
         np.savez(file, allow_pickle=False, belongs_to=np.array(_canonical(belongs_to)), **arrays)
 
 
-def read_checkpoint(folder: Path, belongs_to: dict[str, Any]) -> dict[str, dict[str, Array]] | None:
+def read_checkpoint(folder: Path, belongs_to: Mapping[str, Any]) -> dict[str, dict[str, Array]] | None:
     """The states in `folder` by name; None if there are none, or damaged ones, or those of another fit."""
     try:
         with (folder / CHECKPOINT).open("rb") as content, np.load(content, allow_pickle=False) as file:
@@ -230,8 +231,8 @@ def remove_checkpoint(folder: Path) -> None:
     (folder / CHECKPOINT).unlink(missing_ok=True)
 
 
-def _canonical(values: dict[str, Any]) -> str:
-    return json.dumps(values, sort_keys=True)
+def _canonical(values: Mapping[str, Any]) -> str:
+    return json.dumps(dict(values), sort_keys=True)
 
 
 class Loss(Protocol):
@@ -261,24 +262,60 @@ class Limits:
         return cls(trial.epochs, trial.patience, trial.time_limit_s, trial.give_up)
 
 
+@dataclass(frozen=True, eq=False)
+class Trained:
+    """What came of training: the weights that the trial keeps, those that validated best, and how it went."""
+
+    kept: Array
+    best: Array
+    progress: Progress
+    ending: Ending
+
+
+def train(
+    trial: Iterative,
+    optimiser: Optimiser,
+    validation: Loss,
+    start: Array,
+    folder: Path,
+    belongs_to: dict[str, Any],
+    report: Report | None,
+) -> Trained:
+    """Train from the weights `start` to the trial's limits: `run_epochs` of this trial."""
+    progress, ending = run_epochs(
+        optimiser,
+        validation,
+        start,
+        Limits.of(trial),
+        folder,
+        {"trial": trial.model_dump(mode="json"), **belongs_to},
+        report,
+    )
+    best = progress.best_parameters
+    keeps_best = ending.reason or trial.keep == "best"
+    kept = best if keeps_best else optimiser.parameters.astype(np.float64)
+    return Trained(kept, best, progress, ending)
+
+
 def run_epochs(
     optimiser: Optimiser,
     validation: Loss,
     start: Array,
     limits: Limits,
-    folder: Path,
-    belongs_to: dict[str, Any],
-    report: Report | None,
+    folder: Path | None = None,
+    belongs_to: Mapping[str, Any] = MappingProxyType({}),
+    report: Report | None = None,
 ) -> tuple[Progress, Ending]:
     """What became of training from the weights `start`, and how it ended.
 
-    Resumes from the checkpoint in `folder` that `belongs_to` the same; there is none when it ends, which is
-    at the limits or when the optimiser has nothing left to do. `report(epoch, train_loss, validation_loss,
-    wall_s)` is called after each epoch. A loss that is not finite ends it as failed, and training of which
-    no epoch validates better than its start has failed too, unless it was stopped as hopeless.
+    Resumes from the checkpoint in `folder`, if one is given, that `belongs_to` the same; there is none when
+    it ends, which is at the limits or when the optimiser has nothing left to do. `report(epoch, train_loss,
+    validation_loss, wall_s)` is called after each epoch. A loss that is not finite ends it as failed, and
+    training of which no epoch validates better than its start has failed too, unless it was stopped as
+    hopeless.
     """
     progress = Progress(validation.loss(start), start)
-    states = read_checkpoint(folder, belongs_to)
+    states = read_checkpoint(folder, belongs_to) if folder else None
     if states is not None:
         progress = Progress.restored(states["progress"])
         optimiser.restore(states["optimiser"])
@@ -299,13 +336,14 @@ def run_epochs(
             ending = Ending("failed", f"the loss is not finite after epoch {progress.epoch}")
         else:
             ending = _hopeless(limits, progress)
-        if ending is None and time.perf_counter() - saved > CHECKPOINT_EVERY_S:
+        if folder and ending is None and time.perf_counter() - saved > CHECKPOINT_EVERY_S:
             write_checkpoint(folder, belongs_to, progress=progress.state(), optimiser=optimiser.state())
             saved = time.perf_counter()
     if ending is None and progress.best_epoch == 0:
         reason = f"none of {progress.epoch} epochs validated better than the weights it began with"
         ending = Ending("failed", reason)
-    remove_checkpoint(folder)
+    if folder:
+        remove_checkpoint(folder)
     return progress, ending or Ending()
 
 

@@ -6,8 +6,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Literal
 
-import numpy as np
-
 from flexsurr.config.trial import (
     AdamW,
     EvenNetwork,
@@ -34,7 +32,7 @@ from flexsurr.surrogates import (
 )
 from flexsurr.training.adam import Adam
 from flexsurr.training.dataset import Dataset, SampleSource
-from flexsurr.training.epochs import Fit, Limits, Loss, Optimiser, Progress, Report, run_epochs
+from flexsurr.training.epochs import Fit, Loss, Optimiser, Progress, Report, train
 from flexsurr.training.even_hnn_training import EvenHNNObjective, untrained_even_hnn
 from flexsurr.training.initialisation import initial_parameters
 from flexsurr.training.inverse_dynamics import NotPositiveDefinite, fit_port_hamiltonian
@@ -76,30 +74,23 @@ def fit(trial: Trial, source: SampleSource, folder: str | Path, report: Report |
     if trial.samples_per_trajectory is not None:
         dataset = dataset.thinned(trial.samples_per_trajectory)
     network, training, validation, optimiser = _begun(trial, dataset)
-    progress, ending = run_epochs(
-        optimiser,
-        validation,
-        network.parameters,
-        Limits.of(trial),
-        folder,
-        {"trial": trial.model_dump(mode="json"), "dataset": dataset.sha256},
-        report,
+    trained = train(
+        trial, optimiser, validation, network.parameters, folder, {"dataset": dataset.sha256}, report
     )
-    best = replace(network, parameters=progress.best_parameters)
-    last = replace(network, parameters=optimiser.parameters.astype(np.float64))
-    network = best if ending.reason or trial.keep == "best" else last
+    best = replace(network, parameters=trained.best)
+    network = replace(network, parameters=trained.kept)
     errors = FieldErrors.over(network, dataset.validation_blocks())
     return Fit(
         surrogate=network,
         best=best,
-        status=ending.status,
-        reason=ending.reason,
+        status=trained.ending.status,
+        reason=trained.ending.reason,
         train_nmse=training.loss(network.parameters),
         validation_nmse=validation.loss(network.parameters),
-        best_validation_nmse=progress.best_loss,
+        best_validation_nmse=trained.progress.best_loss,
         parameters=network.parameter_count,
         validation_nmse_per_state=tuple(errors.nmse_per_state().tolist()),
-        **progress.figures(),
+        **trained.progress.figures(),
     )
 
 

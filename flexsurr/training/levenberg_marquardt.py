@@ -4,6 +4,7 @@ The damping μ follows the gain ratio (H. B. Nielsen, *Damping parameter in Marq
 IMM-REP-1999-05, eq. 2.11); it is scaled by the largest diagonal of JᵀJ met so far (Moré 1978), so that
 the steps don't depend on the units of single weights. A step that does not lessen the loss is repeated
 with more damping from the same JᵀJ, which is accumulated so that memory does not grow with the samples.
+What JᵀJ is made of, and how its system is solved, is the objective's affair.
 """
 
 from collections.abc import Callable
@@ -22,12 +23,60 @@ LARGEST_DAMPING = 1e12
 SMALLEST_DAMPING = 1e-15
 
 
+class Equations(Protocol):
+    """The normal equations at some weights, of residuals r whose sum of squares is the loss."""
+
+    @property
+    def loss(self) -> float:
+        """The sum of squares."""
+        ...
+
+    @property
+    def gradient(self) -> Array:
+        """Jᵀr (n,)."""
+        ...
+
+    @property
+    def diagonal(self) -> Array:
+        """Of JᵀJ (n,)."""
+        ...
+
+    def step(self, damping: Array) -> Array | None:
+        """−(JᵀJ + diag(damping))⁻¹ Jᵀr, or None where rounding leaves no positive definite matrix.
+
+        `damping` (n,) is a multiple of the largest diagonals met so far.
+        """
+        ...
+
+
 class NormalEquations(NamedTuple):
-    """JᵀJ (n, n) and Jᵀr (n,) of residuals r whose sum of squares is the loss."""
+    """JᵀJ (n, n) as one matrix, and Jᵀr (n,). Satisfies `Equations`."""
 
     loss: float
     gram: Array
     gradient: Array
+
+    @property
+    def diagonal(self) -> Array:
+        """Of JᵀJ (n,)."""
+        return self.gram.diagonal()
+
+    def step(self, damping: Array) -> Array | None:
+        """By Cholesky's factors of the whole matrix."""
+        damped = self.gram.copy()
+        damped.flat[:: len(damped) + 1] += ones_for_zeros(damping)
+        try:
+            # its transpose is in LAPACK's own order, so that it is factored in its place
+            factor = cho_factor(damped.T, overwrite_a=True, check_finite=False)
+            step: Array = -cho_solve(factor, self.gradient, check_finite=False)
+            return step
+        except LinAlgError:
+            return None
+
+
+def ones_for_zeros(damping: Array) -> Array:
+    """The same with ones for zeros: a weight that nothing depends on stays where it is."""
+    return np.where(damping > 0.0, damping, 1.0)
 
 
 def accumulated(rows: Rows, shape: tuple[int, ...], unknowns: int, chunk: int) -> NormalEquations:
@@ -56,7 +105,7 @@ class SumOfSquares(Protocol):
         """The sum of squares."""
         ...
 
-    def normal_equations(self, parameters: Array) -> NormalEquations:
+    def normal_equations(self, parameters: Array) -> Equations:
         """JᵀJ, Jᵀr and the sum of squares."""
         ...
 
@@ -88,14 +137,14 @@ class LevenbergMarquardt:
         self._damping = INITIAL_DAMPING
         self._growth = 2.0
         self._equations = objective.normal_equations(parameters)
-        self._largest = self._equations.gram.diagonal()
+        self._largest = self._equations.diagonal
 
     def epoch(self) -> float:
         """Take one step that lessens the loss; the loss after it. `finished` says when there is none."""
-        loss, gram, gradient = self._equations
+        loss, gradient = self._equations.loss, self._equations.gradient
         while self._damping < LARGEST_DAMPING:
             damping = self._damping * self._largest
-            step = _solve(gram, damping, gradient)
+            step = self._equations.step(damping)
             if step is not None:
                 predicted = float(step @ (damping * step - gradient))
                 gained = loss - self._objective.loss(self.parameters + step)
@@ -106,7 +155,7 @@ class LevenbergMarquardt:
                     self._damping = max(self._damping, SMALLEST_DAMPING)
                     self._growth = 2.0
                     self._equations = self._objective.normal_equations(self.parameters)
-                    self._largest = np.maximum(self._largest, self._equations.gram.diagonal())
+                    self._largest = np.maximum(self._largest, self._equations.diagonal)
                     return self._equations.loss
             self._damping *= self._growth
             self._growth *= 2.0
@@ -127,14 +176,3 @@ class LevenbergMarquardt:
         self._damping, self._growth = state["damping"].tolist()
         self._largest = state["largest"].copy()
         self._equations = self._objective.normal_equations(self.parameters)
-
-
-def _solve(gram: Array, damping: Array, gradient: Array) -> Array | None:
-    """−(JᵀJ + diag(damping))⁻¹ Jᵀr, or None where rounding leaves no positive definite matrix."""
-    damped = gram.copy()
-    damped.flat[:: len(gram) + 1] += np.where(damping > 0.0, damping, 1.0)
-    try:
-        step: Array = -cho_solve(cho_factor(damped, overwrite_a=True, check_finite=False), gradient)
-        return step
-    except LinAlgError:
-        return None

@@ -21,12 +21,12 @@ from flexsurr.simulation.rhs import Array
 from flexsurr.surrogates import Intervals, LearnedMap, NetworkMap, PolynomialMap
 from flexsurr.surrogates.monomials import evaluate_monomials, monomials_to_degree
 from flexsurr.surrogates.network_map import side_by_side, with_products
-from flexsurr.training.epochs import Ending, Fit, Limits, Progress, Report, run_epochs
+from flexsurr.training.epochs import Ending, Fit, Limits, Progress, Report, run_epochs, train
 from flexsurr.training.initialisation import initial_weights
 from flexsurr.training.levenberg_marquardt import LevenbergMarquardt, second_order
 from flexsurr.training.losses import nmse
 from flexsurr.training.map_data import MapData, nmse_per_output
-from flexsurr.training.structured_normal_equations import MapObjective
+from flexsurr.training.one_hidden_layer import OneHiddenLayer
 from flexsurr.training.triangle import Triangle
 
 DEGREES = {"linear": 1, "quadratic": 2}
@@ -85,16 +85,14 @@ def fit_network_map(
     outputs = Intervals(tuple(output_names), mean - half, mean + half)
     n, k = len(inputs.names), len(outputs.names)
     weights = np.full(k, 1.0 / k)
-    objective = MapObjective.of(inputs.scaled(u), outputs.scaled(y), hidden, activation, weights)
-    optimiser = LevenbergMarquardt(objective, initial_weights(n, hidden, k, seed, spread=1.0))
-    for _ in range(epochs):
-        optimiser.epoch()
-        if optimiser.finished:
-            break
-    _, _, weights_out, biases_out = objective.unpacked(optimiser.parameters)
-    weights_out[:, constant] = 0.0
-    biases_out[constant] = 0.0
-    return NetworkMap(inputs, outputs, hidden, activation, optimiser.parameters)
+    objective = OneHiddenLayer.of_map(inputs.scaled(u), outputs.scaled(y), hidden, activation, weights)
+    start = initial_weights(n, hidden, k, seed, spread=1.0)
+    progress, _ = run_epochs(LevenbergMarquardt(objective, start), objective, start, Limits(epochs))
+    network = NetworkMap(inputs, outputs, hidden, activation, progress.best_parameters)
+    *_, readout, constants = network.layers()
+    readout[:, constant] = 0.0
+    constants[constant] = 0.0
+    return network
 
 
 def fit_map(trial: Map, data: MapData, folder: str | Path, report: Report | None = None) -> Fit:
@@ -182,24 +180,16 @@ def _fit_one(trial: MapNetwork, data: MapData, folder: Path, report: Report | No
     products = SECOND_ORDER if trial.inputs == "second_order" else ()
     x, y = with_products(data.scaled_u, products), data.scaled_y
     training, validation = (
-        MapObjective.of(x[chosen], y[chosen], hidden, trial.activation)
+        OneHiddenLayer.of_map(x[chosen], y[chosen], hidden, trial.activation)
         for chosen in (~data.held_out, data.held_out)
     )
     # the sums of the hidden weights have unit variance
     start = initial_weights(x.shape[1], hidden, y.shape[1], trial.seed, spread=1.0 / math.sqrt(x.shape[1]))
     optimiser = second_order(trial.optimiser, training, start)
-    progress, ending = run_epochs(
-        optimiser,
-        validation,
-        start,
-        Limits.of(trial),
-        folder,
-        {"trial": trial.model_dump(mode="json"), "dataset": data.sha256, "outputs": data.outputs.names},
-        report,
-    )
-    best = NetworkMap(data.inputs, data.outputs, hidden, trial.activation, progress.best_parameters, products)
-    last = replace(best, parameters=optimiser.parameters)
-    return _Fitted(best if ending.reason or trial.keep == "best" else last, best, progress, ending)
+    belongs_to = {"dataset": data.sha256, "outputs": data.outputs.names}
+    trained = train(trial, optimiser, validation, start, folder, belongs_to, report)
+    best = NetworkMap(data.inputs, data.outputs, hidden, trial.activation, trained.best, products)
+    return _Fitted(replace(best, parameters=trained.kept), best, trained.progress, trained.ending)
 
 
 def _fit_groups(trial: MapNetwork, data: MapData, folder: Path, report: Report | None) -> dict[str, _Fitted]:

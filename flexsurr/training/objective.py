@@ -12,8 +12,9 @@ from flexsurr.surrogates import Network
 from flexsurr.surrogates.scaling import scaled_rates, scaled_states
 from flexsurr.training.backpropagation import workspace
 from flexsurr.training.batches import fields, loss_and_gradient, residuals_and_jacobian
-from flexsurr.training.levenberg_marquardt import NormalEquations, accumulated
+from flexsurr.training.levenberg_marquardt import Equations, accumulated
 from flexsurr.training.losses import output_weights
+from flexsurr.training.one_hidden_layer import OneHiddenLayer
 
 Minimised = Literal["nmse", "mean_square", "norms"]
 
@@ -24,7 +25,8 @@ CHUNK = 1 << 20  # elements of the Jacobian that exist at a time: 8 MB
 class Objective:
     """The nmse of `network`, with any weights, at scaled states `x` and scaled derivatives `y` (m, 2r).
 
-    First-order steps may minimise another loss: see `batches.loss_and_gradient`.
+    First-order steps may minimise another loss: see `batches.loss_and_gradient`. Sums over all samples of a
+    network with one hidden layer are those of `OneHiddenLayer`; others take a Jacobian, in pieces.
     """
 
     network: Network
@@ -51,6 +53,13 @@ class Objective:
         return np.full(count, 1.0 / count if self.minimised == "mean_square" else 0.0, dtype=self.y.dtype)
 
     @cached_property
+    def _shallow(self) -> OneHiddenLayer | None:
+        """The same where there is one hidden layer."""
+        if len(self.network.hidden) > 1:
+            return None
+        return OneHiddenLayer.of_field(self.network, self.x, self.y)
+
+    @cached_property
     def everything(self) -> NDArray[np.int64]:
         """The indices of all samples."""
         return np.arange(len(self.x))
@@ -66,19 +75,25 @@ class Objective:
 
     def loss(self, parameters: Array) -> float:
         """The nmse over all samples; not finite where a weight or the field is not."""
+        if self._shallow is not None:
+            return self._shallow.loss(parameters)
         error = fields(self.kernel(parameters), self.x, self.workspace) - self.y
         return float(np.einsum("si,si,i->", error, error, self.output_weights) / len(error))
 
     def gradient(self, parameters: Array, gradient: Array, samples: NDArray[np.int64] | None = None) -> float:
         """What is `minimised`, over all `samples` (indices; by default all), its gradient into `gradient`."""
+        if self._shallow is not None and samples is None and self.minimised == "nmse":
+            return self._shallow.gradient(parameters, gradient)
         chosen = self.everything if samples is None else samples
         loss: float = loss_and_gradient(
             self.kernel(parameters), self.x, self.y, self.step_weights, chosen, gradient, self.workspace
         )
         return loss
 
-    def normal_equations(self, parameters: Array) -> NormalEquations:
+    def normal_equations(self, parameters: Array) -> Equations:
         """JᵀJ and Jᵀr, accumulated over pieces of the Jacobian: memory is bounded by `CHUNK`."""
+        if self._shallow is not None:
+            return self._shallow.normal_equations(parameters)
         kernel = self.kernel(parameters)
         roots = np.sqrt(self.output_weights / len(self.x))
 

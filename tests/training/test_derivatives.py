@@ -12,7 +12,14 @@ from flexsurr.training import nmse
 from flexsurr.training.networks import to_torch
 from flexsurr.training.objective import Objective
 
-SHAPES = [("hnn", (5,)), ("mlp", (5,)), ("hnn", (4, 3)), ("mlp", (4, 3, 2)), ("dissipative_hnn", (4, 3))]
+SHAPES = [
+    ("hnn", (5,)),
+    ("mlp", (5,)),
+    ("hnn", (4, 3)),
+    ("mlp", (4, 3, 2)),
+    ("dissipative_hnn", (4, 3)),
+    ("dissipative_hnn", (4,)),
+]
 DATASETS = {"one pair": free_responses(4, 20), "three pairs": three_pairs()}
 
 
@@ -42,6 +49,7 @@ def test_gradient_and_normal_equations(architecture, hidden, data, monkeypatch):
     monkeypatch.setattr(
         "flexsurr.training.objective.CHUNK", 7 * surrogate.parameter_count * dataset.x_train.shape[1]
     )
+    monkeypatch.setattr("flexsurr.training.one_hidden_layer.CHUNK", 7 * hidden[0] * (hidden[0] + 1) // 2)
 
     jacobian = automatic_jacobian(surrogate, objective.x)
     residuals = surrogate.scaled_field(objective.x) - objective.y
