@@ -12,7 +12,7 @@ from flexsurr.surrogates import Network
 from flexsurr.surrogates.scaling import scaled_rates, scaled_states
 from flexsurr.training.backpropagation import workspace
 from flexsurr.training.batches import fields, loss_and_gradient, residuals_and_jacobian
-from flexsurr.training.levenberg_marquardt import Equations, accumulated
+from flexsurr.training.levenberg_marquardt import Equations, accumulated, second_difference
 from flexsurr.training.losses import output_weights
 from flexsurr.training.one_hidden_layer import OneHiddenLayer
 
@@ -77,8 +77,13 @@ class Objective:
         """The nmse over all samples; not finite where a weight or the field is not."""
         if self._shallow is not None:
             return self._shallow.loss(parameters)
-        error = fields(self.kernel(parameters), self.x, self.workspace) - self.y
+        error = self._fields(parameters) - self.y
         return float(np.einsum("si,si,i->", error, error, self.output_weights) / len(error))
+
+    def _fields(self, parameters: Array) -> Array:
+        """The scaled field (m, 2r) at all samples."""
+        found: Array = fields(self.kernel(parameters), self.x, self.workspace)
+        return found
 
     def gradient(self, parameters: Array, gradient: Array, samples: NDArray[np.int64] | None = None) -> float:
         """What is `minimised`, over all `samples` (indices; by default all), its gradient into `gradient`."""
@@ -89,6 +94,25 @@ class Objective:
             self.kernel(parameters), self.x, self.y, self.step_weights, chosen, gradient, self.workspace
         )
         return loss
+
+    def bend(self, parameters: Array, step: Array) -> Array:
+        """Jᵀr″ (n,), of the second derivative r″ of the residuals along `step` (n,)."""
+        if self._shallow is not None:
+            return self._shallow.bend(parameters, step)
+        here = self._fields(parameters)
+        second = second_difference(here, self._fields, parameters, step)
+        gradient = np.empty_like(parameters)
+        # its residuals are r″
+        loss_and_gradient(
+            self.kernel(parameters),
+            self.x,
+            here - second,
+            self.output_weights,
+            self.everything,
+            gradient,
+            self.workspace,
+        )
+        return 0.5 * gradient
 
     def normal_equations(self, parameters: Array) -> Equations:
         """JᵀJ and Jᵀr, accumulated over pieces of the Jacobian: memory is bounded by `CHUNK`."""

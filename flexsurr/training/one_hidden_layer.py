@@ -21,7 +21,7 @@ blocks are eliminated together, since they differ by a factor alone: what remain
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple, Protocol
 
@@ -35,7 +35,13 @@ from flexsurr.surrogates import DissipativeHNN, Network
 from flexsurr.surrogates.activations import activation_function
 from flexsurr.surrogates.hnn import ScalarNetworks
 from flexsurr.surrogates.layers import layer_shapes, views
-from flexsurr.training.levenberg_marquardt import Equations, NormalEquations, ones_for_zeros
+from flexsurr.training.levenberg_marquardt import (
+    Equations,
+    NormalEquations,
+    Solver,
+    ones_for_zeros,
+    second_difference,
+)
 from flexsurr.training.losses import output_weights
 
 CHUNK = 1 << 21  # products of two neurons that exist at a time: 16 MB
@@ -172,6 +178,14 @@ class OneHiddenLayer:
         gradient[:] = found if by_parameters is None else by_parameters.T @ found
         return sums.loss
 
+    def bend(self, parameters: Array, step: Array) -> Array:
+        """Jᵀr″ (n,), of the second derivative r″ of the residuals along `step` (n,)."""
+        here = self.outputs(parameters)
+        second = second_difference(here, self.outputs, parameters, step)
+        gradient = np.empty_like(parameters)
+        replace(self, y=here - second).gradient(parameters, gradient)  # its residuals are r″
+        return 0.5 * gradient
+
     def normal_equations(self, parameters: Array) -> Equations:
         """JᵀJ and Jᵀr; memory is that of JᵀJ and of `CHUNK`, however many samples there are."""
         weights = self.readout.weights(parameters)
@@ -295,15 +309,14 @@ class BorderedEquations:
         gram[inner:, inner:] = blocks.reshape(outer, outer)
         return gram
 
-    def step(self, damping: Array) -> Array | None:
-        """−(JᵀJ + diag(damping))⁻¹ Jᵀr, or None where rounding leaves no positive definite matrix.
+    def solver(self, damping: Array) -> Solver | None:
+        """The solution with JᵀJ + diag(damping), or None where rounding leaves it not positive definite.
 
         As the diagonal of JᵀJ does, the damping of the outputs' weights goes with w_o.
         """
         inner, h = len(self.between), len(self.readout)
         of_inner = ones_for_zeros(damping[:inner])
         of_outer = ones_for_zeros(damping[inner:].reshape(len(self.outer), -1)[:, 0] / self.output_weights[0])
-        outer_gradient = self.gradient[inner:].reshape(len(self.outer), -1)
         try:
             outer = cho_factor(self.outer + np.diag(of_outer), check_finite=False)
             halves = solve_triangular(outer[0], self.between.T, trans=1, check_finite=False)
@@ -313,13 +326,18 @@ class BorderedEquations:
             factor = cho_factor(reduced.T, overwrite_a=True, check_finite=False)
         except LinAlgError:
             return None
-        eliminated = (self.between @ cho_solve(outer, outer_gradient)).reshape(-1, h, self.readout.shape[1])
-        right = np.einsum("jko,ko->jk", eliminated, self.readout).ravel() - self.gradient[:inner]
-        step = cho_solve(factor, right, check_finite=False)
-        moved = step.reshape(-1, h, 1) * self.readout
-        coupled = self.between.T @ moved.reshape(inner, -1)
-        outer_step = cho_solve(outer, -outer_gradient / self.output_weights - coupled)
-        return np.concatenate([step, outer_step.ravel()])
+
+        def solve(right: Array) -> Array:
+            by_output = right[inner:].reshape(len(self.outer), -1)
+            eliminated = (self.between @ cho_solve(outer, by_output)).reshape(-1, h, self.readout.shape[1])
+            reduced_right = np.einsum("jko,ko->jk", eliminated, self.readout).ravel() - right[:inner]
+            solution = cho_solve(factor, reduced_right, check_finite=False)
+            moved = solution.reshape(-1, h, 1) * self.readout
+            coupled = self.between.T @ moved.reshape(inner, -1)
+            of_outputs = cho_solve(outer, -by_output / self.output_weights - coupled)
+            return np.concatenate([solution, of_outputs.ravel()])
+
+        return solve
 
     def _inner_less(self, matrix: Array) -> Array:
         """(T − matrix) times (V w Vᵀ), element by element, in place of `matrix`; its lower triangle alone."""

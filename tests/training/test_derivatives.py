@@ -69,6 +69,25 @@ def test_gradient_and_normal_equations(architecture, hidden, data, monkeypatch):
     np.testing.assert_allclose([*losses, equations.loss], expected, rtol=1e-12)
 
 
+@pytest.mark.parametrize(("architecture", "hidden"), SHAPES)
+def test_how_residuals_bend_along_a_step(architecture, hidden):
+    """Jᵀ of their second derivative, which differences of the field in NumPy give."""
+    dataset = DATASETS["three pairs"]
+    surrogate = network(dataset, architecture, hidden)
+    objective = Objective.of(surrogate, dataset.x_train, dataset.dx_train)
+    theta = surrogate.parameters
+    step = 1e-2 * np.random.default_rng(0).standard_normal(theta.size)
+    ahead, here, behind = (
+        replace(surrogate, parameters=theta + sign * step).scaled_field(objective.x) for sign in (1, 0, -1)
+    )
+    weighted = (
+        automatic_jacobian(surrogate, objective.x) * (objective.output_weights / len(objective.x))[:, None]
+    )
+    expected = np.einsum("sin,si->n", weighted, ahead - 2 * here + behind)
+    found = objective.bend(theta, step)
+    np.testing.assert_allclose(found, expected, atol=1e-3 * np.abs(expected).max())
+
+
 LOSSES = {
     "mean_square": lambda error: error.pow(2).mean(),
     # eqs. 11 and 12 as printed, and the mean over the samples

@@ -67,9 +67,9 @@ def test_a_step_is_that_of_the_whole_matrix(seed, inputs, hidden, outputs, activ
     equations = objective.normal_equations(parameters)
     damping = 1e-3 * np.maximum(equations.diagonal, objective.normal_equations(1.5 * parameters).diagonal)
     whole = equations.gram + np.diag(damping)
-    assert np.linalg.norm(whole @ equations.step(damping) + equations.gradient) <= 1e-10 * np.linalg.norm(
-        equations.gradient
-    )
+    assert np.linalg.norm(
+        whole @ equations.solver(damping)(equations.gradient) + equations.gradient
+    ) <= 1e-10 * np.linalg.norm(equations.gradient)
 
 
 def test_a_neuron_that_no_sample_reaches_stays_as_it_is():
@@ -77,7 +77,7 @@ def test_a_neuron_that_no_sample_reaches_stays_as_it_is():
     objective, parameters = problem(4, 30, 2, 3, 2)
     parameters[6] = 1e3  # its bias: tanh is 1 at all samples
     equations = objective.normal_equations(parameters)
-    step = equations.step(1e-3 * equations.diagonal)
+    step = equations.solver(1e-3 * equations.diagonal)(equations.gradient)
     assert np.all(np.isfinite(step))
     assert np.all(step[[0, 3, 6]] == 0.0)
 

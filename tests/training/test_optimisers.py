@@ -59,6 +59,37 @@ def test_levenberg_marquardt_goes_along_rosenbrocks_valley():
     assert np.all(np.diff(losses) <= 0.0)
 
 
+class BendingRosenbrock(Residuals):
+    """Its first residual bends: its second derivative along a step v is −20 v₀²."""
+
+    def __init__(self):
+        plain = rosenbrock()
+        super().__init__(plain.residuals, plain.jacobian)
+
+    def bend(self, parameters, step):
+        return self.jacobian(parameters).T @ np.array([-20.0 * step[0] ** 2, 0.0])
+
+
+def test_a_step_that_bends_with_the_residuals_goes_along_the_valley_sooner():
+    def epochs(problem):
+        optimiser = LevenbergMarquardt(problem, np.array([-1.2, 1.0]))
+        losses = [optimiser.epoch() for _ in range(40)]
+        assert np.all(np.diff(losses) <= 0.0)
+        np.testing.assert_allclose(optimiser.parameters, 1.0, atol=1e-8)
+        return np.argmax(np.array(losses) < 1e-12)
+
+    assert epochs(BendingRosenbrock()) < 0.75 * epochs(rosenbrock())
+
+
+def test_a_step_that_would_bend_too_far_does_not_bend(monkeypatch):
+    monkeypatch.setattr("flexsurr.training.levenberg_marquardt.LARGEST_BEND", 0.0)
+    bent, plain = (
+        LevenbergMarquardt(problem, np.array([-1.2, 1.0])) for problem in (BendingRosenbrock(), rosenbrock())
+    )
+    for _ in range(5):
+        assert bent.epoch() == plain.epoch()
+
+
 def test_levenberg_marquardt_repeats_steps_from_the_same_jacobian():
     problem = rosenbrock()
     optimiser = LevenbergMarquardt(problem, np.array([-1.2, 1.0]))
