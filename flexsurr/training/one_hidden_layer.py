@@ -99,7 +99,6 @@ class TiedReadout:
         self.value, self.slope = network.sigma.slope, network.sigma.curvature
         states, (hidden,) = len(network.state_names), network.hidden
         r, scalars = states // 2, network.networks
-        self._shapes = network.shapes(states, network.hidden)
         # V (neuron, output) = c (neuron) sign (output) W (source of the output, neuron)
         turned = np.roll(np.arange(states), -r), np.repeat([1.0, -1.0], r)
         plain = np.arange(states), np.ones(states)
