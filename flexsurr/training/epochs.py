@@ -203,7 +203,7 @@ class Progress:
         )
 
 
-def write_checkpoint(folder: Path, belongs_to: dict[str, Any], **states: dict[str, Array]) -> None:
+def write_checkpoint(folder: Path, belongs_to: Mapping[str, Any], **states: dict[str, Array]) -> None:
     """Write the arrays of the named `states` whole, with what they belong to (plain JSON values)."""
     arrays = {f"{name}/{key}": array for name, state in states.items() for key, array in state.items()}
     with replacing(folder / CHECKPOINT) as beside, beside.open("wb") as file:

@@ -226,8 +226,10 @@ class _Sums:
         k, values = weights.readout.shape[1], h + (weights.constants is not None)
         shapes: list[tuple[int, ...]] = [((n + 1) * h + values * k,)]
         shapes += [((n + 1) * (n + 2) // 2, h * (h + 1) // 2), ((n + 1) * h, values), (values, values)]
-        gradient, *others = (np.zeros(shape if with_pairs or len(shape) == 1 else 0) for shape in shapes)
-        return cls(0.0, gradient, *others, with_pairs)
+        gradient, pairs, between, outer = (
+            np.zeros(shape if with_pairs or len(shape) == 1 else 0) for shape in shapes
+        )
+        return cls(0.0, gradient, pairs, between, outer, with_pairs)
 
     def add(self, objective: OneHiddenLayer, weights: Weights, x: Array, y: Array) -> None:
         """Of samples x (m, n) and y (m, k)."""
