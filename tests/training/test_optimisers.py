@@ -8,9 +8,9 @@ from oscillator import free_responses, network
 from flexsurr.surrogates.torch_module import field
 from flexsurr.training.adam import Adam
 from flexsurr.training.lbfgs import LBFGS
-from flexsurr.training.levenberg_marquardt import LevenbergMarquardt
+from flexsurr.training.levenberg_marquardt import LevenbergMarquardt, NormalEquations
 from flexsurr.training.networks import from_torch, to_torch
-from flexsurr.training.objective import NormalEquations, Objective
+from flexsurr.training.objective import Objective
 
 
 class Residuals:
