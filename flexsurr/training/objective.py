@@ -57,7 +57,7 @@ class Objective:
         """The same where there is one hidden layer."""
         if len(self.network.hidden) > 1:
             return None
-        return OneHiddenLayer.of_field(self.network, self.x, self.y)
+        return OneHiddenLayer.of_field(self.network, self.x, self.y, self.output_weights)
 
     @cached_property
     def everything(self) -> NDArray[np.int64]:

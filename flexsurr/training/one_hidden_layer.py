@@ -152,11 +152,11 @@ class OneHiddenLayer:
         return cls(x, y, readout, output_weights(y) if weights is None else weights)
 
     @classmethod
-    def of_field(cls, network: Network, x: Array, y: Array) -> "OneHiddenLayer":
-        """That of a field at scaled states `x` and rates `y` (m, 2r)."""
+    def of_field(cls, network: Network, x: Array, y: Array, weights: Array) -> "OneHiddenLayer":
+        """That of a field at scaled states `x` and rates `y` (m, 2r); `weights` (2r,) are the outputs'."""
         if isinstance(network, ScalarNetworks):
-            return cls(x, y, TiedReadout(network), output_weights(y))
-        return cls.of_map(x, y, network.hidden[0], network.activation)
+            return cls(x, y, TiedReadout(network), weights)
+        return cls.of_map(x, y, network.hidden[0], network.activation, weights)
 
     def outputs(self, parameters: Array) -> Array:
         """Scaled outputs (m, k) at the samples."""
