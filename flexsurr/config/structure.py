@@ -184,6 +184,12 @@ class Structure(Record):
         return self.along_span is None and not self.point_masses
 
     @property
+    def plain(self) -> bool:
+        """Whether the file itself shows that it can move: uniform, without weight, and every joint moves mass."""
+        turns_mass = "torsion" not in self.joints or self.torsional_inertia_per_length_kg_m > 0.0
+        return self.uniform and self.gravity_m_s2 == 0.0 and turns_mass
+
+    @property
     def straight(self) -> bool:
         """Whether the unloaded axis is the clamp's x, untwisted."""
         return self.along_span is None or not self.along_span.bends

@@ -6,7 +6,6 @@ from fnmatch import fnmatch
 from functools import cached_property
 from pathlib import Path
 
-from flexsurr.beam.soundness import check_structure
 from flexsurr.config.errors import ConfigurationError
 from flexsurr.config.settings import Configuration
 from flexsurr.config.sources import AnyStudy, ResolvedSampleStudy, ResolvedStudy
@@ -29,14 +28,22 @@ OF_RUNS = {"metrics": "metrics.json", "history": "history.parquet"}
 def _plan_of(study: AnyStudy) -> AnyPlan:
     match study:
         case ResolvedStudy():
-            try:
-                check_structure(study.structure)
-            except ValueError as error:
-                raise ConfigurationError([f"{study.study.structure}: {error}"]) from None
+            if not study.structure.plain:
+                _check(study)
             return TrajectoryPlan(study)
         case ResolvedSampleStudy():
             return SamplePlan(study)
     return FilesPlan(study)
+
+
+def _check(study: ResolvedStudy) -> None:
+    # imported here, for the beam brings SciPy and numba, which a plan does not need
+    from flexsurr.beam.soundness import check_structure
+
+    try:
+        check_structure(study.structure)
+    except ValueError as error:
+        raise ConfigurationError([f"{study.study.structure}: {error}"]) from None
 
 
 class Plan:
