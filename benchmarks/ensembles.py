@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 from cantilever import SEED, cantilever_dataset
-from timing import measure
+from timing import Timing, compare
 from wing import FRESH, basis, starts, wing_model
 
 from flexsurr.config.study import InitialConditions, Integrator
@@ -46,6 +46,10 @@ def last(numbers, x):
     return x[:, -1]
 
 
+def shown(walls: dict[str, Timing]) -> str:
+    return "".join(f"{timing!s:>18}" for timing in walls.values())
+
+
 def cantilever() -> None:
     dataset = cantilever_dataset("hamiltonian")
     ranges = InitialConditions()
@@ -65,8 +69,9 @@ def cantilever() -> None:
 
             found = run(CORES).kept[:CHECKED]
             error = (np.abs(found - exact) / np.abs(exact).max(axis=0)).max()
-            walls = [str(measure(lambda n=n: run(n), repeats=5, warmup=1)) for n in (1, CORES)]
-            print(f"{name:<26}{step_s:>8}{walls[0]:>18}{walls[1]:>18}{error:>10.0e}", flush=True)
+            runs = {f"threads: {n}": lambda n=n: run(n) for n in (1, CORES)}
+            walls = compare(f"{RESPONSES} responses of {name}, step {step_s} s", runs, repeats=5, warmup=1)
+            print(f"{name:<26}{step_s:>8}{shown(walls)}{error:>10.0e}", flush=True)
 
 
 def wing() -> None:
@@ -80,8 +85,9 @@ def wing() -> None:
         def run(threads, model=model):
             return simulate_ensemble(model, ENDS, x0, STIFF, observe=last, threads=threads)
 
-        walls = [str(measure(lambda n=n: run(n), repeats=3, warmup=1)) for n in (1, CORES)]
-        print(f"{name:<34}{walls[0]:>18}{walls[1]:>18}", flush=True)
+        runs = {f"threads: {n}": lambda n=n: run(n) for n in (1, CORES)}
+        walls = compare(f"{OF_WING} responses of the wing, {name}", runs, repeats=3, warmup=1)
+        print(f"{name:<34}{shown(walls)}", flush=True)
 
 
 def main() -> None:

@@ -30,6 +30,7 @@ BENCHMARKS = (
     "beam_right_hand_sides",
     "structures",
     "surrogates",
+    "ensembles",
     "instructions",
     "aerodynamics",
     "peers_of_the_beam",
