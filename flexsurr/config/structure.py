@@ -185,7 +185,7 @@ class Structure(Record):
 
     @property
     def plain(self) -> bool:
-        """Whether the file itself shows that it can move: uniform, without weight, and every joint moves mass."""
+        """Whether its values alone show that it can move: uniform, without weight, all joints move mass."""
         turns_mass = "torsion" not in self.joints or self.torsional_inertia_per_length_kg_m > 0.0
         return self.uniform and self.gravity_m_s2 == 0.0 and turns_mass
 

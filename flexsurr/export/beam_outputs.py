@@ -26,9 +26,9 @@ def tip(basis: ModalBasis, eta: Value) -> tuple[Value, Value]:
     frame = constant(beam.clamp)
     along = []
     for i in range(n):
-        if beam.turns is not None:
-            frame = frame @ constant(beam.turns[i])
-        frame = frame @ turns[i].reshape(3, 3)
+        turn = turns[i].reshape(3, 3)
+        # constants first with what varies: a product of two constants has no place in a batch
+        frame = frame @ (turn if beam.turns is None else constant(beam.turns[i]) @ turn)
         along.append(frame @ beam.stretches[i])
     steps = concat(along).reshape(n, 3)
     up = beam.clamp[:, 2] @ (frame @ constant(beam.undeformed.T))

@@ -209,19 +209,16 @@ _QUOTIENTS = {"half_log": lambda z: z, "atan": lambda z: 1.0}
 """Numerators of the slopes over 1 + z²."""
 
 
-def _separate(tag, y, z):
-    return slope(tag, y), slope(tag, z)
-
-
 def _with_one_division(numerator: Function) -> Function:
     of_number = njit(**OPTIONS)(numerator)
 
-    def quotients(tag, y, z):
+    @njit(**OPTIONS)
+    def quotients(y, z):
         of_y, of_z = 1.0 + y * y, 1.0 + z * z
         inverse = 1.0 / (of_y * of_z)
         return of_number(y) * of_z * inverse, of_number(z) * of_y * inverse
 
-    return quotients
+    return lambda tag, y, z: quotients(y, z)
 
 
 _PAIRS: dict[Any, Function] = {
@@ -231,7 +228,7 @@ _PAIRS: dict[Any, Function] = {
 
 @overload(two_slopes, jit_options=OPTIONS)
 def _two_slopes(tag, y, z):
-    return _PAIRS.get(tag.instance_class, _separate)
+    return _PAIRS.get(tag.instance_class, lambda tag, y, z: (slope(tag, y), slope(tag, z)))
 
 
 ACTIVATIONS = {

@@ -55,6 +55,7 @@ def known(truth, samples=300, seed=0):
         state_units=truth.state_units,
         sha256="none",
         mass=truth.mass_matrix(x[cut:, :R]),
+        forces=-x[cut:, :R] @ truth.stiffness,
         stiffness=truth.stiffness,
         damping=truth.damping,
     )
