@@ -104,7 +104,7 @@ def in_exudyn(step_s: float, q0: np.ndarray) -> Callable[[], Tip]:
                 jointOffsets=offsets,
                 linkInertiasCOM=inertias,
                 linkCOMs=middles,
-                linkMasses=[beam.element_mass] * count,
+                linkMasses=list(beam.masses),
                 jointPControlVector=list(beam.stiffness),
                 jointPositionOffsetVector=zeros,
                 jointDControlVector=zeros,
@@ -141,7 +141,7 @@ def in_mujoco(step_s: float, q0: np.ndarray) -> Callable[[], Tip]:
         root = 0.0 if k == 0 else beam.element_length
         opened += (
             f'<body pos="{root} 0 0"><joint type="hinge" axis="0 1 0" stiffness="{beam.stiffness[k]:.17g}"/>'
-            f'<inertial pos="{0.5 * beam.element_length} 0 0" mass="{beam.element_mass!r}"'
+            f'<inertial pos="{0.5 * beam.element_length} 0 0" mass="{beam.masses[k]:.17g}"'
             f' diaginertia="1e-12 1e-12 1e-12"/>'
         )
         closed += "</body>"
