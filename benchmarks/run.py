@@ -31,7 +31,6 @@ BENCHMARKS = (
     "structures",
     "surrogates",
     "ensembles",
-    "instructions",
     "aerodynamics",
     "peers_of_the_beam",
     "peers_of_the_lattice",
