@@ -22,18 +22,16 @@ def seconds(row: pd.Series) -> str:
 
 
 def section(what: str, rows: pd.DataFrame) -> str:
-    """The table of what was timed, or counted, in turns."""
-    counted = rows["instructions"].notna().all()
+    """The table of what was timed in turns."""
     lines = [
         f"**{what[0].upper()}{what[1:]}** (`benchmarks/{rows['benchmark'].iloc[0]}.py`)",
         "",
-        f"| | {'instructions' if counted else 'one call'} | of {rows['against'].iloc[0]} |",
+        f"| | one call | of {rows['against'].iloc[0]} |",
         "|---|---|---|",
     ]
     for row in rows.itertuples():
-        absolute = f"{row.instructions:,.0f}" if counted else seconds(row)
-        spread = "" if counted or row.case == row.against else f" ± {row.ratio_spread:.1g}"
-        lines.append(f"| {row.case} | {absolute} | {row.ratio:.3g}{spread} |")
+        spread = "" if row.case == row.against else f" ± {row.ratio_spread:.1g}"
+        lines.append(f"| {row.case} | {seconds(row)} | {row.ratio:.3g}{spread} |")
     return "\n".join(lines)
 
 

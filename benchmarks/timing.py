@@ -4,7 +4,6 @@ Where the environment names a file in `ROWS`, each timing is added to it as a ro
 """
 
 import csv
-import math
 import os
 import statistics
 import sys
@@ -50,8 +49,6 @@ class Row:
     spread_s: float
     lowest_s: float
     repeats: int
-    instructions: float | None = None
-    """Of one call, where they were counted; then nothing was timed."""
 
 
 COLUMNS = [field.name for field in fields(Row)]
@@ -115,6 +112,9 @@ def _timing(seconds: list[float], first: list[float]) -> Timing:
 
 
 def _note(what: str, case: str, against: str, timing: Timing) -> None:
+    path = os.environ.get(ROWS)
+    if not path:
+        return
     row = Row(
         benchmark=Path(sys.argv[0]).stem,
         what=what,
@@ -127,20 +127,5 @@ def _note(what: str, case: str, against: str, timing: Timing) -> None:
         lowest_s=timing.lowest_s,
         repeats=timing.repeats,
     )
-    _add(row)
-
-
-def note_instructions(what: str, counts: dict[str, float]) -> None:
-    """Add a row for each count of instructions, against the first."""
-    first = next(iter(counts))
-    for case, count in counts.items():
-        ratio = count / counts[first]
-        _add(Row(Path(sys.argv[0]).stem, what, case, first, ratio, 0.0, *[math.nan] * 3, 1, count))
-
-
-def _add(row: Row) -> None:
-    path = os.environ.get(ROWS)
-    if not path:
-        return
     with open(path, "a", newline="", encoding="utf-8") as file:
         csv.writer(file).writerow(astuple(row))

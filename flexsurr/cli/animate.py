@@ -8,7 +8,7 @@ from typing import Any
 
 from flexsurr.beam import EquilibriumNotFound
 from flexsurr.cli.command import personal
-from flexsurr.cli.simulate_surrogate import state
+from flexsurr.cli.simulate_surrogate import response_arguments
 from flexsurr.config.reading import read_yaml
 from flexsurr.library import LoadedSurrogate, OutOfRange, animate, load_surrogate
 from flexsurr.report.animation import ENDINGS
@@ -24,17 +24,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--frames", type=int, default=150, help="pictures in all, by default 150: 20 a second"
     )
-    parser.add_argument(
-        "--initial",
-        type=state,
-        nargs="+",
-        default=[],
-        metavar="STATE=VALUE",
-        help="initial values in the states' units; the others are those at rest",
-    )
-    parser.add_argument(
-        "--load", type=Path, metavar="FILE", help="a YAML file with the keys of a study's evaluation.load"
-    )
+    response_arguments(parser)
     parser.add_argument(
         "--output", type=Path, required=True, metavar="FILE", help=f"a {' or '.join(ENDINGS)} file"
     )

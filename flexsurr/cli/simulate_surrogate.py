@@ -23,6 +23,18 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--step", type=float, default=0.01, metavar="S", help="seconds between samples, by default 0.01"
     )
+    response_arguments(parser)
+    parser.add_argument(
+        "--output",
+        type=_output,
+        required=True,
+        metavar="FILE",
+        help=f"a {TABLE} or {', '.join(FIGURES)} file",
+    )
+
+
+def response_arguments(parser: argparse.ArgumentParser) -> None:
+    """From where a response starts, and under what."""
     parser.add_argument(
         "--initial",
         type=state,
@@ -33,13 +45,6 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--load", type=Path, metavar="FILE", help="a YAML file with the keys of a study's evaluation.load"
-    )
-    parser.add_argument(
-        "--output",
-        type=_output,
-        required=True,
-        metavar="FILE",
-        help=f"a {TABLE} or {', '.join(FIGURES)} file",
     )
 
 

@@ -5,6 +5,7 @@ given in the clamp's frame before the clamp is turned: x along the undeformed sp
 `follows` turns with the element on which it acts, and its direction is given in that element's own axes.
 """
 
+from abc import abstractmethod
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Annotated, Literal, Self
@@ -34,7 +35,7 @@ class _Load(Record):
     @property
     def parts(self) -> tuple["Single", ...]:
         """The loads of one history each that it is made of: itself."""
-        return (self,)  # type: ignore[return-value]
+        return (self,)  # type: ignore[return-value]  # every subclass but `Several` is one of `Single`
 
     @property
     def start_s(self) -> float:
@@ -57,8 +58,9 @@ class _Load(Record):
             joints = ", ".join(structure.ordered_joints)
             raise ValueError(f"no joint feels it; allowed: a load that can do work on the joints ({joints})")
 
+    @abstractmethod
     def _felt(self, structure: Structure) -> bool:
-        raise NotImplementedError
+        """Whether it does work on any joint."""
 
 
 class _Directed(_Load):
@@ -66,7 +68,7 @@ class _Directed(_Load):
 
     @model_validator(mode="after")
     def _has_a_direction(self) -> Self:
-        direction: Vector = self.direction  # type: ignore[attr-defined]
+        direction: Vector = self.direction  # type: ignore[attr-defined]  # a field of each subclass
         if not any(direction):
             raise ValueError(f"direction: {list(direction)} is the zero vector; allowed: any other")
         return self

@@ -6,6 +6,7 @@ matplotlib draws and Pillow writes; a page holds its pictures, and asks no netwo
 import re
 from collections.abc import Mapping
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import matplotlib
@@ -139,22 +140,15 @@ def save_animation(motions: Mapping[str, Array], t: Array, title: str, path: Pat
             if path.suffix == ".html":
                 beside.write_text(_page(film, title), encoding="utf-8")
             else:
-                film.save(str(beside), writer=_Gif(fps=FRAMES_A_SECOND), dpi=100)
+                _save_gif(film, beside)
 
 
-class _Gif(PillowWriter):
-    """Pillow's writer, for a file whose name does not end as its format."""
-
-    def finish(self) -> None:
-        first, *others = self._frames  # type: ignore[attr-defined]
-        first.save(
-            self.outfile,
-            format="GIF",
-            save_all=True,
-            append_images=others,
-            duration=int(1000 / self.fps),
-            loop=0,
-        )
+def _save_gif(film: FuncAnimation, path: Path) -> None:
+    # Pillow knows the format by the file's ending, which `path` need not have
+    with TemporaryDirectory() as folder:
+        named = Path(folder) / "film.gif"
+        film.save(str(named), writer=PillowWriter(fps=FRAMES_A_SECOND), dpi=100)
+        path.write_bytes(named.read_bytes())
 
 
 def _page(film: FuncAnimation, title: str) -> str:

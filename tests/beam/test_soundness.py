@@ -1,5 +1,8 @@
 import numpy as np
 import pytest
+from hypothesis import assume, given, reject
+from hypothesis import strategies as st
+from pydantic import ValidationError
 from structures import ALL_JOINTS, CANTILEVER, FORMS, change
 
 from flexsurr.beam.soundness import check_structure, unit_hint
@@ -10,6 +13,32 @@ def test_sound_structures_pass(form):
     structure = change(ALL_JOINTS, **FORMS[form])
     check_structure(structure)
     assert unit_hint(structure) == ""
+
+
+@given(
+    joints=st.sets(st.sampled_from(["in_plane", "out_of_plane", "torsion", "axial"]), min_size=1),
+    elements=st.integers(1, 12),
+    inertia=st.floats(0.0, 1.0),
+    offset=st.floats(-1.0, 1.0),
+    inertias=st.sampled_from(["exact", "constant"]),
+)
+def test_a_plain_structure_is_sound(joints, elements, inertia, offset, inertias):
+    """What the plan takes from the values alone is what the matrices say."""
+    assume(inertia == 0.0 or inertia > 1e-6)
+    values = {
+        "joints": tuple(joints),
+        "elements": elements,
+        "torsional_inertia_per_length_kg_m": inertia,
+        "centre_of_gravity_offset_m": offset,
+        "rotary_inertia": inertias,
+        "gravity_m_s2": 0.0,
+    }
+    try:
+        structure = change(ALL_JOINTS, **values)
+    except ValidationError:
+        reject()  # its file is refused already
+    if structure.plain:
+        check_structure(structure)
 
 
 def test_a_joint_that_moves_no_mass_is_named():

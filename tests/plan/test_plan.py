@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 import yaml
 
+from flexsurr.config.errors import ConfigurationError
 from flexsurr.config.settings import load
 from flexsurr.evaluation.published import is_of_the_recipe
 from flexsurr.report.catalogue import FIGURES, TABLES
@@ -289,3 +290,11 @@ def test_other_data_make_other_runs_and_leave_the_old_ones(root):
     assert set(before).isdisjoint(plan(root).runs)
     change(root, STRUCTURE, "elements", 10)
     assert list(plan(root).studies[BEAM].runs) == before
+
+
+def test_a_structure_that_buckles_under_its_own_weight_is_refused_before_any_job(root):
+    pole = {"clamp_theta_deg": 90.0, "gravity_m_s2": 9.81, "mass_per_length_kg_m": 60.0}
+    for key, value in pole.items():
+        change(root, STRUCTURE, key, value)
+    with pytest.raises(ConfigurationError, match=f"{STRUCTURE}: gravity_m_s2: .*buckles under"):
+        plan(root)

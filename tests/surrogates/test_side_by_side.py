@@ -73,7 +73,10 @@ def test_one_that_leaves_the_finite_numbers_ends_alone():
 def test_memory_is_that_of_a_block():
     model, x0, t = compiled(EVEN), states(30 * LANES), np.linspace(0.0, 0.2, 501)
     integrator = Integrator(method="dop853_fixed", step_s=0.01)
-    ends = lambda numbers, x: x[:, -1]  # noqa: E731
+
+    def ends(numbers, x):
+        return x[:, -1]
+
     simulate_ensemble(model, t[:2], x0[:LANES], integrator, observe=ends)
     tracemalloc.start()
     found = simulate_ensemble(model, t, x0, integrator, observe=ends, threads=1)
