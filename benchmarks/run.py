@@ -21,7 +21,7 @@ import pandas as pd
 import psutil
 from timing import COLUMNS, ROWS
 
-from flexsurr.cli.commit import commit
+from flexsurr.cli.training import commit
 from flexsurr.storage.atomic import replacing
 
 HERE = Path(__file__).parent

@@ -1,23 +1,11 @@
 """flexsurr <command>: surrogates of flexible structures, from the shell."""
 
-import ast
-import runpy
 import sys
-from pathlib import Path
+from importlib import import_module
 
 from flexsurr import __version__
+from flexsurr.cli.index import FOR_PEOPLE, function_of, purpose, purposes
 
-COMMANDS = Path(__file__).parent / "cli"
-FOR_PEOPLE = (
-    "animate",
-    "check",
-    "export",
-    "new-study",
-    "reference",
-    "simulate-surrogate",
-    "surrogate",
-    "track",
-)
 EXIT_CODES = """exit codes
   0    done
   1    it cannot be done: one line says why (a traceback is a mistake of ours: please report it)
@@ -35,41 +23,26 @@ def main() -> None:
     if name == "--version":
         print(__version__)
         sys.exit()
-    if not _module(name).isidentifier() or _purpose(COMMANDS / f"{_module(name)}.py") is None:
+    try:
+        module = function_of(name).partition(":")[0]
+    except KeyError:
         print(f"flexsurr: no command {name!r}; flexsurr --help lists them", file=sys.stderr)
         sys.exit(2)
-    del sys.argv[1]
-    # A command is its module run as a script, so nothing is imported that it does not need.
-    runpy.run_module(f"flexsurr.cli.{_module(name)}", run_name="__main__", alter_sys=True)
+    # Its module alone, so that nothing is imported that it does not need.
+    import_module(module)
+    from flexsurr.cli.command import run
 
-
-def commands() -> dict[str, str]:
-    """What each command does in one line, by its name; read from the sources, which need not be imported."""
-    purposes = {path.stem.replace("_", "-"): _purpose(path) for path in sorted(COMMANDS.glob("*.py"))}
-    return {name: purpose for name, purpose in purposes.items() if purpose is not None}
-
-
-def _purpose(path: Path) -> str | None:
-    """The first line of a module that can be run as a script; None for any other, or where there is none."""
-    if not path.is_file():
-        return None
-    tree = ast.parse(path.read_bytes())
-    if not any(isinstance(node, ast.If) and "__main__" in ast.unparse(node.test) for node in tree.body):
-        return None
-    return (ast.get_docstring(tree) or "").split("\n")[0]
-
-
-def _module(name: str) -> str:
-    return name.replace("-", "_")
+    run(name, purpose(name), sys.argv[2:])
 
 
 def overview() -> str:
     """Every command in a line, those for people first."""
-    every = commands()
+    every = purposes()
     width = max(map(len, every))
+    people = {name for names in FOR_PEOPLE.values() for name in names}
     of_people, of_rules = (
-        [f"  {name:<{width}}  {text}" for name, text in every.items() if (name in FOR_PEOPLE) == people]
-        for people in (True, False)
+        [f"  {name:<{width}}  {text}" for name, text in every.items() if (name in people) == wanted]
+        for wanted in (True, False)
     )
     return "\n".join(
         [

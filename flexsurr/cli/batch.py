@@ -14,8 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from flexsurr.cli.command import Job
-from flexsurr.storage import StorageError, read_json, write_json
-from flexsurr.storage.atomic import read_bytes
+from flexsurr.storage import StorageError, read_bytes, read_json, write_json
 from flexsurr.workflow.code_digest import code_digest
 
 log = logging.getLogger(__name__)
@@ -26,7 +25,7 @@ JUDGED = ("fit.json", "weights.npz", "best.npz")
 
 @dataclass(frozen=True)
 class Item:
-    """One of them: its name, the command that makes one alone, its values, and how it is made.
+    """One of them: its name, the function that makes one alone, its values, and how it is made.
 
     Files are named below the results.
     """
@@ -49,7 +48,7 @@ def make_all(
     StorageError names them at the end.
     """
     expected: tuple[type[Exception], ...] = (StorageError, *refused)
-    code = cache(lambda command: code_digest(f"flexsurr.cli.{command}"))
+    code = cache(code_digest)
     contents = cache(lambda file: hashlib.sha256(read_bytes(results / file)).hexdigest())
     problems = []
     for number, item in enumerate(items, start=1):
@@ -88,48 +87,52 @@ def _noted(path: Path) -> str | None:
 
 
 def trials_of(
-    job: Job,
-    results: Path,
-    train: Callable[[Job, list[Path], Path], None],
-    score: Callable[[Job, Path, list[Path]], None],
-    commands: tuple[str, str],
+    job: Job, results: Path, store: Path, train: Callable[..., None], score: Callable[..., None]
 ) -> list[Item]:
-    """The trials of a batch: `train(job, trains on, folder)` and `score(job, folder, scored on)` of each.
+    """The trials of a batch, made by the commands that `train` and `score` one alone.
 
-    `commands` are those that train and score one alone: what is judged otherwise is not trained again.
+    What is scored otherwise is not trained again.
     """
     items = []
     for key, trial in job["trials"].items():
-        folder = f"runs/{key}"
+        name = f"runs/{key}"
+        folder = results / name
         trains_on, scored_on = (
             [results / file for file in trial[which]] for which in ("trains_on", "scored_on")
         )
+        data = sorted({file.parent for file in trains_on})
+        files = (*(folder / judged for judged in JUDGED), scored_on, folder / "metrics.json")
         items += [
             Item(
                 key,
-                commands[0],
+                _part(train),
                 trial["train"],
                 trial["trains_on"],
-                [f"{folder}/{name}" for name in TRAINED],
-                f"{folder}/trained.json",
-                partial(train, trial["train"], trains_on, results / folder),
+                [f"{name}/{file}" for file in TRAINED],
+                f"{name}/trained.json",
+                partial(train, trial["train"], data, store, folder),
             ),
             Item(
                 f"{key}, its score",
-                commands[1],
+                _part(score),
                 trial["score"],
-                [*(f"{folder}/{name}" for name in JUDGED), *trial["scored_on"]],
-                [f"{folder}/metrics.json"],
-                f"{folder}/scored.json",
-                partial(score, trial["score"], results / folder, scored_on),
+                [*(f"{name}/{file}" for file in JUDGED), *trial["scored_on"]],
+                [f"{name}/metrics.json"],
+                f"{name}/scored.json",
+                partial(score, trial["score"], *files),
             ),
         ]
     return items
 
 
-def shards_of(job: Job, results: Path, make: Callable[[Job, Path], None], command: str) -> list[Item]:
-    """The shards of a batch, each made by `make(job, file)` as `command` makes one alone."""
+def shards_of(job: Job, results: Path, make: Callable[[Job, Path], None]) -> list[Item]:
+    """The shards of a batch, each made as the command `make` makes one alone."""
     return [
-        Item(file, command, shard, (), [file], f"{file}.json", partial(make, shard, results / file))
+        Item(file, _part(make), shard, (), [file], f"{file}.json", partial(make, shard, results / file))
         for file, shard in job["shards"].items()
     ]
+
+
+def _part(command: Callable[..., None]) -> str:
+    """The name of a command's function, as `code_digest` takes it."""
+    return f"{command.__module__}:{command.__name__}"

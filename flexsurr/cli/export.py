@@ -1,4 +1,4 @@
-"""Export a surrogate: a C header, a NumPy file, ONNX, or an FMU for Simulink, OpenModelica or a rig."""
+"""Surrogates for other programs."""
 
 import argparse
 from collections.abc import Callable
@@ -6,7 +6,7 @@ from pathlib import Path
 
 from flexsurr.aerodynamics.features import COEFFICIENT_UNITS, COEFFICIENTS, FEATURE_UNITS, FEATURES
 from flexsurr.beam import EquilibriumNotFound
-from flexsurr.cli.command import personal
+from flexsurr.cli.command import for_people
 from flexsurr.config.aircraft import load_aircraft
 from flexsurr.config.sample_study import SampleStudy
 from flexsurr.config.study_files import StudyFiles
@@ -40,11 +40,13 @@ FORMS: dict[str, tuple[str, Callable[[ExportedModel], str | bytes]]] = {
 """The ending of each form, and what writes it."""
 
 RUNS = Path("results/runs")
+
 WEIGHTS = "weights.npz"
+
 UNITS = dict(zip((*FEATURES, *COEFFICIENTS), (*FEATURE_UNITS, *COEFFICIENT_UNITS), strict=True))
 
 
-def arguments(parser: argparse.ArgumentParser) -> None:
+def _export_arguments(parser: argparse.ArgumentParser) -> None:
     """The run, the form, and where it goes."""
     parser.add_argument("run", help=f"a run's name, its folder or its {WEIGHTS}")
     parser.add_argument("--to", choices=FORMS, required=True, help="the form")
@@ -62,8 +64,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def main(run: str, to: str, aircraft: str | None, name: str | None, output: Path | None) -> None:
-    """Write the form and say where it is.
+@for_people(_export_arguments, SurrogateFileError, OSError, NotExported, EquilibriumNotFound, TrimNotFound)
+def export(run: str, to: str, aircraft: str | None, name: str | None, output: Path | None) -> None:
+    """Export a surrogate: a C header, a NumPy file, ONNX, or an FMU for Simulink, OpenModelica or a rig.
 
     Raises SurrogateFileError and OSError for a file that is no surrogate, NotExported for one that has no
     such form, TrimNotFound for an aircraft that has no trim with it.
@@ -110,11 +113,3 @@ def _aircraft(learned: LearnedMap, run_id: str, study: str, name: str | None) ->
         f"At the start in trim at Mach {flight.condition.mach:g} and {flight.condition.altitude_m:g} m.",
     )
     return exported_aircraft(level.model, level.state, learned, name or study, about)
-
-
-if __name__ == "__main__":
-    personal(
-        main,
-        arguments,
-        expected=(SurrogateFileError, OSError, NotExported, EquilibriumNotFound, TrimNotFound),
-    )

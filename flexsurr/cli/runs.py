@@ -1,11 +1,15 @@
-"""What is written of a run as keys with values (fit.json, metrics.json), and the choice among runs."""
+"""What is written of runs (fit.json, metrics.json), and the runs that a study has selected."""
 
 from pathlib import Path
 from typing import Any
 
 from flexsurr.storage import DamagedFile, read_json
+from flexsurr.training.selection import ERROR
 
 OF_A_RUN = ("run_id", "study", "status")
+
+SELECTED = {"selection": "the selected runs", "runs": "the folder of all runs"}
+"""What commands are given that read the selected runs."""
 
 
 def read_run(path: Path) -> dict[str, Any]:
@@ -16,7 +20,27 @@ def read_run(path: Path) -> dict[str, Any]:
     return content
 
 
-def read_selection(path: Path) -> dict[str, dict[str, Any]]:
+def selected_runs(selection: Path, variant: str) -> dict[str, dict[str, Any]]:
+    """The metrics of the run of each name; the Pareto sets, which are lists, are left out."""
+    entries = _read_selection(selection).get(variant, {})
+    return {name: entry for name, entry in entries.items() if isinstance(entry, dict)}
+
+
+def selected_surrogates(selection: Path, variant: str, runs: Path) -> dict[str, Any]:
+    """The surrogates selected for `variant`, by the names under which tables show them."""
+    from flexsurr.surrogates import load  # here: tables read runs too, and need no kernels
+
+    chosen = selected_runs(selection, variant)
+    return {name: load(runs / entry["run_id"] / "weights.npz") for name, entry in chosen.items()}
+
+
+def most_accurate(selection: Path, variant: str) -> str | None:
+    """The name of the surrogate of `variant` whose long responses err least; None if none was selected."""
+    chosen = selected_runs(selection, variant)
+    return min(chosen, key=lambda name: chosen[name][ERROR], default=None)
+
+
+def _read_selection(path: Path) -> dict[str, dict[str, Any]]:
     """Variant -> name -> what is written of the chosen run, and under "pareto" a list of such.
 
     DamagedFile for a damaged one, or that of another study.

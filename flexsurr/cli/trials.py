@@ -1,32 +1,34 @@
-"""Train and score many surrogates of fields, one after another: those of a batch that are not there."""
+"""Many trials of a batch, trained and scored one after another: those that are not there."""
 
 from pathlib import Path
 
 from flexsurr.beam import EquilibriumNotFound
-from flexsurr.cli.batch import JUDGED, make_all, trials_of
-from flexsurr.cli.command import Job, command
-from flexsurr.cli.score import main as score
-from flexsurr.cli.train import main as train
+from flexsurr.cli.batch import make_all, trials_of
+from flexsurr.cli.command import Job, for_rules
+from flexsurr.cli.scoring import score, score_map
+from flexsurr.cli.training import train, train_map
 
-REFUSED = (EquilibriumNotFound, ArithmeticError)
-
-
-def main(job: Job, results: Path, store: Path, output: Path) -> None:
-    """Make the runs of the job below `results`, and write what is made to `output`."""
-
-    def trained(trial: Job, trains_on: list[Path], folder: Path) -> None:
-        train(trial, sorted({file.parent for file in trains_on}), store, folder)
-
-    def scored(trial: Job, folder: Path, scored_on: list[Path]) -> None:
-        fit, weights, best = (folder / name for name in JUDGED)
-        score(trial, fit, weights, best, scored_on[0], folder / "metrics.json")
-
-    items = trials_of(job, results, trained, scored, ("train", "score"))
-    make_all(items, results, output, REFUSED)
+BATCH = {
+    "results": "the folder of results",
+    "store": "the address of the tracking store",
+    "output": "what is made",
+}
 
 
-if __name__ == "__main__":
-    command(
-        main,
-        {"results": "the folder of results", "store": "the address of the store", "output": "what is made"},
-    )
+@for_rules(**BATCH)
+def trials(job: Job, results: Path, store: Path, output: Path) -> None:
+    """Train and score many surrogates of fields, one after another: those of a batch that are not there.
+
+    Their folders lie below `results`; `output` lists what is in them.
+    """
+    items = trials_of(job, results, store, train, score)
+    make_all(items, results, output, (EquilibriumNotFound, ArithmeticError))
+
+
+@for_rules(**BATCH)
+def map_trials(job: Job, results: Path, store: Path, output: Path) -> None:
+    """Train and score many surrogates of maps, one after another: those of a batch that are not there.
+
+    Their folders lie below `results`; `output` lists what is in them.
+    """
+    make_all(trials_of(job, results, store, train_map, score_map), results, output)

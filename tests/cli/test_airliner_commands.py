@@ -8,7 +8,11 @@ import pandas as pd
 import pytest
 
 from flexsurr.aerodynamics.features import COEFFICIENTS
-from flexsurr.cli import accuracy, fly, fly_randomly, sample, score_map, select, store, train_map
+from flexsurr.cli.flight import accuracy, fly, fly_randomly
+from flexsurr.cli.samples import sample
+from flexsurr.cli.scoring import score_map, select
+from flexsurr.cli.tracking import store
+from flexsurr.cli.training import train_map
 from flexsurr.config.flight import DoubletTimes
 from flexsurr.config.settings import load
 from flexsurr.report.airliner_flight_figures import figure_19
@@ -29,16 +33,16 @@ def results(tmp_path_factory) -> Path:
     root = tmp_path_factory.mktemp("results")
     for name in PLAN.datasets():
         for shard in range(PLAN.shards(name)):
-            sample.main(PLAN.simulate(name, shard), shard_path(root, shard, name))
-    store.main({"uri": None, "studies": ["airliner"]}, root / "mlflow" / "airliner.json")
+            sample(PLAN.simulate(name, shard), shard_path(root, shard, name))
+    store({"uri": None, "studies": ["airliner"]}, root / "mlflow" / "airliner.json")
     for run_id, run in PLAN.runs.items():
         folder = root / "runs" / run_id
-        train_map.main(PLAN.train(run_id), [root / run.variant], root / "mlflow" / "airliner.json", folder)
+        train_map(PLAN.train(run_id), [root / run.variant], root / "mlflow" / "airliner.json", folder)
         weights = (folder / "weights.npz", folder / "best.npz")
-        score_map.main(PLAN.score(run_id), folder / "fit.json", *weights, [], folder / "metrics.json")
+        score_map(PLAN.score(run_id), folder / "fit.json", *weights, [], folder / "metrics.json")
     choose(root / "runs", root / "selected.json")
     tables = (root / "accuracy.parquet", root / "errors.parquet")
-    accuracy.main(PLAN.accuracy(), root / "selected.json", root / "runs", root, *tables)
+    accuracy(PLAN.accuracy(), root / "selected.json", root / "runs", root, *tables)
     return root
 
 
@@ -47,12 +51,12 @@ def shard_path(root: Path, shard: int, name: str = "pseudo_random") -> Path:
 
 
 def choose(runs: Path, output: Path) -> None:
-    select.main(PLAN.select(), runs, output)
+    select(PLAN.select(), runs, output)
 
 
 def test_a_shard_comes_out_the_same_from_its_seed_and_number(results, tmp_path):
     again = tmp_path / "shard.parquet"
-    sample.main(PLAN.simulate("pseudo_random", 1), again)
+    sample(PLAN.simulate("pseudo_random", 1), again)
     first, second = read_samples(shard_path(results, 1)), read_samples(again)
     np.testing.assert_array_equal(first.u, second.u)
     np.testing.assert_array_equal(first.y, second.y)
@@ -106,7 +110,7 @@ def without_networks(results, tmp_path) -> Path:
 def test_without_a_network_that_finished_the_lattice_flies_alone(results, without_networks, tmp_path):
     names = ("modes", "left_out", "elastic_modes", "doublets", "trims")
     made = [tmp_path / f"{name}.parquet" for name in names]
-    fly.main(PLAN.fly(), without_networks, results / "runs", *made)
+    fly(PLAN.fly(), without_networks, results / "runs", *made)
     doublets = pd.read_parquet(tmp_path / "doublets.parquet")
     assert set(doublets["model"]) == {"vlm_frozen", "quadratic"}
     modes = airliner_modes(pd.read_parquet(tmp_path / "modes.parquet"))
@@ -114,12 +118,12 @@ def test_without_a_network_that_finished_the_lattice_flies_alone(results, withou
     assert modes["surrogate_real"].isna().all()
     names = ("flights", "exceedances", "cost", "rows", "limits")
     made = [tmp_path / f"{name}.parquet" for name in names]
-    fly_randomly.main(PLAN.fly(), without_networks, results / "runs", *made)
+    fly_randomly(PLAN.fly(), without_networks, results / "runs", *made)
     rows = cost(pd.read_parquet(tmp_path / "rows.parquet"))
     assert set(rows["model"]) == {"vlm_rebuild", "vlm_frozen", "vlm_frozen_one_mach", "quadratic"}
     assert len(pd.read_parquet(tmp_path / "limits.parquet")) == 0
     files = (tmp_path / "accuracy.parquet", tmp_path / "errors.parquet")
-    accuracy.main(PLAN.accuracy(), without_networks, results / "runs", results, *files)
+    accuracy(PLAN.accuracy(), without_networks, results / "runs", results, *files)
     assert set(airliner_accuracy(pd.read_parquet(files[0]))["model"]) == {"linear"}
     figure_19(doublets, DoubletTimes(**PLAN.fly()["flight"]["doublet"]))
     coefficient_errors(pd.read_parquet(files[1]))
@@ -129,4 +133,4 @@ def test_samples_of_another_configuration_are_refused(results, tmp_path):
     run_id = next(iter(PLAN.runs))
     job = {**PLAN.train(run_id), "configuration": "0" * 16}
     with pytest.raises(StorageError, match=r"shard-0000\.parquet: belongs to the configuration"):
-        train_map.main(job, [results / "pseudo_random"], results / "mlflow" / "airliner.json", tmp_path)
+        train_map(job, [results / "pseudo_random"], results / "mlflow" / "airliner.json", tmp_path)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from flexsurr.cli.batch import JUDGED, TRAINED, make_all, trials_of
+from flexsurr.cli.batch import TRAINED, make_all, trials_of
 from flexsurr.storage import StorageError, read_json
 
 
@@ -28,7 +28,7 @@ class Batch:
             "scored_on": ["data/manifest.json"],
         }
 
-    def train(self, job: dict, trains_on: list[Path], folder: Path) -> None:
+    def train(self, job: dict, data: list[Path], store: Path, folder: Path) -> None:
         self.done.append(f"train {job['run_id']}")
         if job["run_id"] in self.refused:
             raise ArithmeticError("it leaves the finite numbers")
@@ -36,21 +36,29 @@ class Batch:
         for name in TRAINED:
             (folder / name).write_text(str(job))
 
-    def score(self, job: dict, folder: Path, scored_on: list[Path]) -> None:
+    def score(self, job: dict, fit: Path, weights: Path, best: Path, data: list[Path], output: Path) -> None:
         self.done.append(f"score {job['run_id']}")
-        assert all((folder / name).is_file() for name in JUDGED)
-        (folder / "metrics.json").write_text(str(job))
+        assert all(file.is_file() for file in (fit, weights, best, *data))
+        output.write_text(str(job))
 
     def make(self) -> list[str]:
         """What is done when the batch is started."""
         self.done.clear()
-        items = trials_of(self.job, self.results, self.train, self.score, ("train", "score"))
+        items = trials_of(self.job, self.results, self.results / "store.json", self.train, self.score)
         make_all(items, self.results, self.results / "batches/made.json", (ArithmeticError,))
         return list(self.done)
 
 
 @pytest.fixture
-def batch(tmp_path: Path) -> Batch:
+def code(monkeypatch) -> dict[str, str]:
+    """The digest of each command's code, by the name of its function; those not in here are the name."""
+    digests: dict[str, str] = {}
+    monkeypatch.setattr("flexsurr.cli.batch.code_digest", lambda part: digests.get(part.split(":")[1], part))
+    return digests
+
+
+@pytest.fixture
+def batch(tmp_path: Path, code) -> Batch:
     return Batch(tmp_path)
 
 
@@ -78,6 +86,14 @@ def test_other_data_make_all_of_it_again(batch):
     batch.make()
     (batch.results / "data/manifest.json").write_text('{"shards": 2}')
     assert batch.make() == ["train a", "score a", "train b", "score b"]
+
+
+def test_other_code_makes_again_what_it_makes(batch, code):
+    batch.make()
+    code["score"] = "edited"
+    assert batch.make() == ["score a", "score b"]
+    code["train"] = "edited"
+    assert batch.make() == ["train a", "train b"]
 
 
 def test_a_file_that_is_gone_is_made_again(batch):

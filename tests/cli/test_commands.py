@@ -5,12 +5,15 @@ import re
 import signal
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import pytest
 
-from flexsurr.__main__ import FOR_PEOPLE, commands
-from flexsurr.cli import join
+from flexsurr.cli import index
+from flexsurr.cli.command import COMMANDS
+from flexsurr.cli.index import FOR_PEOPLE, FOR_RULES, purposes
+from flexsurr.cli.report import join
 from flexsurr.config.settings import load
 from flexsurr.storage import read_shard
 from flexsurr.workflow.job_files import write_job
@@ -28,17 +31,19 @@ TROUBLE = [
     ("EOFError('Ran out of input')", "/kept/here: damaged machine code; delete it, and it is compiled anew"),
 ]
 SLEEPER = """
+import sys
 import time
-from flexsurr.cli.command import command
+from flexsurr.cli.command import for_rules, run
 
-def main(job):
+@for_rules()
+def sleep(job):
     try:
         print("at work", flush=True)
         time.sleep(60)
     finally:
         print("closed", flush=True)
 
-command(main, {})
+run("sleep", "", sys.argv[1:])
 """
 
 
@@ -100,11 +105,20 @@ def test_without_numbas_compiler_a_line_says_so(tmp_path, monkeypatch, integrato
 @pytest.mark.parametrize(("trouble", "said"), TROUBLE)
 def test_what_the_machine_refuses_is_one_line(tmp_path, monkeypatch, trouble, said):
     monkeypatch.setenv("NUMBA_CACHE_DIR", "/kept/here")
-    code = f"from flexsurr.cli.command import command\ndef main(job): raise {trouble}\ncommand(main, {{}})"
+    code = f"""
+import sys
+from flexsurr.cli.command import for_rules, run
+
+@for_rules()
+def refuse(job):
+    raise {trouble}
+
+run("refuse", "", sys.argv[1:])
+"""
     job = write_job(tmp_path, "refused", {})
     words = [sys.executable, "-c", code, "--job", str(job)]
     done = subprocess.run(words, cwd=REPOSITORY, capture_output=True, text=True, timeout=120)
-    assert (done.returncode, done.stderr) == (1, f"command: {said}\n")
+    assert (done.returncode, done.stderr) == (1, f"flexsurr refuse: {said}\n")
 
 
 @pytest.mark.parametrize("content", ["{", "[]", None])
@@ -141,11 +155,22 @@ def test_help_lists_every_command_of_the_rules_and_what_each_code_means():
     called = set(re.findall(r"python -m flexsurr ([a-z-]+)", rules)) | {
         command for pair in SamplePlan.commands.items() for command in pair
     }
-    assert called
-    assert called | set(FOR_PEOPLE) == set(commands())
-    for part in (*commands().items(), "for you", "snakemake", "130"):
+    of_rules, of_people = (
+        {name for names in of.values() for name in names} for of in (FOR_RULES, FOR_PEOPLE)
+    )
+    assert of_rules <= called <= of_rules | of_people
+    for part in (*purposes().items(), "for you", "snakemake", "130"):
         for word in (part,) if isinstance(part, str) else part:
             assert word in text
+
+
+def test_the_index_has_every_command_where_it_stands():
+    for module in {*FOR_PEOPLE, *FOR_RULES}:
+        import_module(f"flexsurr.cli.{module}")
+    declared = {name: command.work.__module__ for name, command in COMMANDS.items()}
+    assert set(declared) == set(purposes())
+    assert all(index.function_of(name).partition(":")[0] == module for name, module in declared.items())
+    assert all(purposes().values())
 
 
 @pytest.mark.parametrize(("arguments", "code"), [((), 2), (("fly-away",), 2), (("--version",), 0)])
@@ -159,7 +184,7 @@ def test_each_command_explains_itself_by_the_name_it_is_called():
     done = run("learn-load", "--help")
     assert done.returncode == 0
     assert done.stdout.startswith("usage: flexsurr learn-load ")
-    assert commands()["learn-load"] in " ".join(done.stdout.split())
+    assert purposes()["learn-load"] in " ".join(done.stdout.split())
 
 
 def test_the_list_of_commands_needs_no_library():
@@ -187,12 +212,12 @@ def test_checking_says_what_is_wrong_in_a_line_each(tmp_path):
 
 def test_simulating_needs_neither_torch_nor_mlflow_nor_matplotlib():
     heavy = {"torch", "mlflow", "matplotlib", "pandas"}
-    code = f"import sys, flexsurr.cli.simulate; print({heavy} & set(sys.modules))"
+    code = f"import sys, flexsurr.cli.trajectories; print({heavy} & set(sys.modules))"
     done = subprocess.run([sys.executable, "-c", code], cwd=REPOSITORY, capture_output=True, text=True)
     assert done.stdout.strip() == "set()", done.stderr
 
 
-@pytest.mark.parametrize("module", ["cli.tabulate", "cli.join", "workflow.plan"])
+@pytest.mark.parametrize("module", ["cli.report", "workflow.plan"])
 def test_tables_and_plans_need_neither_kernels_nor_figures(module):
     heavy = {"numba", "scipy", "matplotlib", "torch", "mlflow"}
     code = f"import sys, flexsurr.{module}; print({heavy} & set(sys.modules))"
@@ -206,6 +231,6 @@ def test_tables_of_one_name_are_joined_to_the_letter(tmp_path):
         (tmp_path / study / "cost.csv").write_text(f"study,wall_s\n{study},{cost}\n")
         (tmp_path / study / "runs.csv").write_text(f"study\n{study}\n")
     inputs = [tmp_path / study / f"{name}.csv" for name in ("cost", "runs") for study in ("beam", "wing")]
-    join.main({}, inputs, tmp_path)
+    join({}, inputs, tmp_path)
     assert (tmp_path / "cost.csv").read_text() == "study,wall_s\nbeam,0.10\nwing,1e-07\n"
     assert (tmp_path / "runs.csv").read_text() == "study\nbeam\nwing\n"

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from flexsurr.cli import ingest
+from flexsurr.cli.datasets import ingest
 from flexsurr.storage import StorageError, read_shard
 
 T = np.linspace(0.0, 1.0, 30)
@@ -39,7 +39,7 @@ def job(tmp_path, monkeypatch):
 
 
 def test_what_the_states_do_by_themselves_is_learned_and_forces_are_kept(job, tmp_path):
-    ingest.main(job, tmp_path / "shard-0000.parquet")
+    ingest(job, tmp_path / "shard-0000.parquet")
     shard = read_shard(tmp_path / "shard-0000.parquet")
     np.testing.assert_allclose(
         shard.dx, np.column_stack([2.0 * shard.x[:, 1], -2.0 * shard.x[:, 0]]), atol=1e-12
@@ -52,7 +52,7 @@ def test_estimated_derivatives_lose_the_forces_too(job, tmp_path):
     for state in job["columns"]["pairs"][0].values():
         state.pop("derivative", None)
     job["filter"] = {"window": 7, "order": 4}
-    ingest.main(job, tmp_path / "shard-0000.parquet")
+    ingest(job, tmp_path / "shard-0000.parquet")
     shard = read_shard(tmp_path / "shard-0000.parquet")
     # q and p are those of the free spring here, so that estimated slopes are known
     expected = np.column_stack([2.0 * np.cos(2.0 * T), -2.0 * np.sin(2.0 * T) - T])
@@ -63,4 +63,4 @@ def test_a_file_that_has_changed_since_is_named(job, tmp_path):
     with (tmp_path / "a.csv").open("a") as file:
         file.write("1.1,0,0,0,0,0\n")
     with pytest.raises(StorageError, match=r"a\.csv: has changed"):
-        ingest.main(job, tmp_path / "shard-0000.parquet")
+        ingest(job, tmp_path / "shard-0000.parquet")

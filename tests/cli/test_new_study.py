@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 import yaml
 
-from flexsurr.cli import new_study as command
+from flexsurr.cli import studies
+from flexsurr.cli.command import COMMANDS
 from flexsurr.config.settings import load
 from flexsurr.workflow.plan import Plan
 
@@ -38,8 +39,8 @@ def clone(tmp_path_factory):
 
 def new_study(root, *arguments):
     parser = argparse.ArgumentParser()
-    command.arguments(parser)
-    command.main(**vars(parser.parse_args([*arguments, "--directory", str(root)])))
+    COMMANDS["new-study"].arguments(parser)
+    studies.new_study(**vars(parser.parse_args([*arguments, "--directory", str(root)])))
 
 
 @pytest.mark.parametrize("name", BEAMS)

@@ -10,7 +10,7 @@ import pytest
 from exported_models import WING, aerodynamics, maps, port_polynomial
 
 from flexsurr.beam import reduce
-from flexsurr.cli.export import main
+from flexsurr.cli.export import export
 from flexsurr.config.study import Reduction
 from flexsurr.export import (
     NotExported,
@@ -61,26 +61,26 @@ def test_the_command_writes_the_form_and_says_where(runs):
 
 @pytest.mark.parametrize("run", [f"results/runs/{MAP_RUN}", f"results/runs/{MAP_RUN}/weights.npz", MAP_RUN])
 def test_a_run_is_named_in_three_ways(runs, run, tmp_path, capsys):
-    main(run, "numpy", None, None, tmp_path / "map.py")
+    export(run, "numpy", None, None, tmp_path / "map.py")
     assert (tmp_path / "map.py").read_text() == numpy_file(runs[2])
     assert capsys.readouterr().out == f"{tmp_path / 'map.py'}\n"
 
 
 @pytest.mark.parametrize(("to", "write"), [("onnx", onnx_file), ("fmu", fmu)])
 def test_binary_forms_are_those_of_the_library(runs, to, write, tmp_path):
-    main(WING_RUN, to, None, None, tmp_path / "wing")
+    export(WING_RUN, to, None, None, tmp_path / "wing")
     assert (tmp_path / "wing").read_bytes() == write(runs[1])
 
 
 def test_another_name_is_that_of_all_that_is_defined(tmp_path):
-    main(WING_RUN, "c", None, "wing", tmp_path / "wing.h")
+    export(WING_RUN, "c", None, "wing", tmp_path / "wing.h")
     text = (tmp_path / "wing.h").read_text()
     assert "static inline void wing_rates(" in text
     assert "port_hamiltonian_0123456789_" not in text
 
 
 def test_the_aircraft_is_exported_in_trim(tmp_path):
-    main(AERODYNAMICS_RUN, "numpy", "airliner", None, tmp_path / "airliner.py")
+    export(AERODYNAMICS_RUN, "numpy", "airliner", None, tmp_path / "airliner.py")
     module = ModuleType("airliner")
     exec((tmp_path / "airliner.py").read_text(), module.__dict__)
     rates = module.rates(module.START)
@@ -93,7 +93,7 @@ def test_the_aircraft_is_exported_in_trim(tmp_path):
 
 def test_a_map_that_is_no_aerodynamics_flies_no_aircraft(tmp_path):
     with pytest.raises(NotExported, match="not a map of the 25 features to 12 coefficients"):
-        main(MAP_RUN, "c", "airliner", None, tmp_path / "airliner.h")
+        export(MAP_RUN, "c", "airliner", None, tmp_path / "airliner.h")
 
 
 @pytest.mark.parametrize(
@@ -105,7 +105,7 @@ def test_a_map_that_is_no_aerodynamics_flies_no_aircraft(tmp_path):
 )
 def test_what_cannot_be_exported_is_said_in_a_line(run, to, name, said, tmp_path):
     with pytest.raises(NotExported, match=said) as refused:
-        main(run, to, None, name, tmp_path / "file")
+        export(run, to, None, name, tmp_path / "file")
     assert len(str(refused.value).splitlines()) == 1
     assert not list(tmp_path.iterdir())
 
@@ -115,7 +115,7 @@ def test_an_fmu_without_a_compiler_is_refused(monkeypatch, tmp_path):
     with pytest.raises(
         NotExported, match="--to fmu needs a C compiler, and there is none of no-such-compiler"
     ):
-        main(WING_RUN, "fmu", None, None, tmp_path / "wing.fmu")
+        export(WING_RUN, "fmu", None, None, tmp_path / "wing.fmu")
 
 
 def test_onnx_without_its_package_is_refused(monkeypatch, tmp_path):
@@ -123,10 +123,10 @@ def test_onnx_without_its_package_is_refused(monkeypatch, tmp_path):
     with pytest.raises(
         NotExported, match=r"--to onnx needs the package onnx: pip install 'flexsurr\[export\]'"
     ):
-        main(WING_RUN, "onnx", None, None, tmp_path / "wing.onnx")
+        export(WING_RUN, "onnx", None, None, tmp_path / "wing.onnx")
 
 
 def test_a_file_that_is_no_surrogate_is_refused(tmp_path):
     (tmp_path / "weights.npz").write_bytes(b"rubbish")
     with pytest.raises(SurrogateFileError, match="not a readable"):
-        main(str(tmp_path), "c", None, None, tmp_path / "file.h")
+        export(str(tmp_path), "c", None, None, tmp_path / "file.h")

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from flexsurr.cli import manifest, score, select, simulate, statics, tabulate, train
+from flexsurr.cli import datasets, evaluation, report, scoring, training, trajectories
 from flexsurr.config.settings import load
 from flexsurr.workflow.job_files import write_job
 from flexsurr.workflow.plan import Plan
@@ -36,32 +36,32 @@ class Results:
 
     def simulate(self, shard: int, path: Path | None = None) -> None:
         path = path or self.dataset / f"shard-{shard:04d}.parquet"
-        simulate.main(self.job("simulate", STUDY, VARIANT, shard), path)
+        trajectories.simulate(self.job("simulate", STUDY, VARIANT, shard), path)
 
     def manifest(self, path: Path | None = None) -> None:
         job = self.job("manifest", STUDY, VARIANT)
-        manifest.main(job, self.dataset, path or self.dataset / "manifest.json")
+        datasets.manifest(job, self.dataset, path or self.dataset / "manifest.json")
 
     def train(self, key: str = RUN) -> None:
         store = self.root / "mlflow/store.json"  # there is none: the page is tested elsewhere
-        train.main(self.job("train", key), [self.dataset], store, self.root / "runs" / key)
+        training.train(self.job("train", key), [self.dataset], store, self.root / "runs" / key)
 
     def score(self, key: str = RUN) -> None:
         run = self.root / "runs" / key
         files = [run / "fit.json", run / "weights.npz", run / "best.npz"]
-        score.main(self.job("score", key), *files, self.dataset / "manifest.json", run / "metrics.json")
+        scoring.score(self.job("score", key), *files, [self.dataset / "manifest.json"], run / "metrics.json")
 
     def select(self) -> None:
         job = {"study": STUDY, "sweeps": {"default": [RUN, OTHER]}}
         output = self.root / "selected" / f"{STUDY}.json"
-        select.main(job, self.root / "runs", output)
+        scoring.select(job, self.root / "runs", output)
 
     def statics(self) -> None:
         folder = self.root / "evaluation" / STUDY
         files = (folder / f"{name}.parquet" for name in ("statics", "frequencies", "shapes"))
-        statics.main(self.job("statics", STUDY), *files)
+        evaluation.statics(self.job("statics", STUDY), *files)
 
     def tabulate(self, table: str) -> None:
         caption = REPOSITORY / "workflow/report" / f"{table}.rst"
         job = {table: self.job("tabulate", STUDY, "statics")[table]}
-        tabulate.main(job, self.root, [caption], self.root / "tables" / STUDY)
+        report.tabulate(job, self.root, [caption], self.root / "tables" / STUDY)

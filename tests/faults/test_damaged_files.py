@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 from small_results import OTHER, REPOSITORY, RUN, STUDY, VARIANT, Results
 
-from flexsurr.cli import join
-from flexsurr.cli.frames import read_frame
-from flexsurr.cli.selected import selected_surrogates
+from flexsurr.cli.report import join
+from flexsurr.cli.runs import selected_surrogates
 from flexsurr.storage import DamagedFile
+from flexsurr.storage.frames import read_frame
 from flexsurr.surrogates import load
 from flexsurr.training.epochs import write_checkpoint
 from flexsurr.workflow.job_files import write_job
@@ -34,7 +34,7 @@ def selected(results: Results) -> None:
 
 
 def joined(results: Results) -> None:
-    join.main({}, [results.root / "tables" / STUDY / "static_tip.csv"], results.root / "tables")
+    join({}, [results.root / "tables" / STUDY / "static_tip.csv"], results.root / "tables")
 
 
 def history(results: Results) -> None:
@@ -118,7 +118,7 @@ def test_the_command_says_what_to_do(results):
     path = results.run / "metrics.json"
     halve(path, path)
     job = write_job(results.root / "jobs", "select", {"study": STUDY, "sweeps": {"default": [RUN]}})
-    words = [sys.executable, "-m", "flexsurr.cli.select", "--job", str(job), "--runs"]
+    words = [sys.executable, "-m", "flexsurr", "select", "--job", str(job), "--runs"]
     words += [str(results.root / "runs"), "--output", str(results.root / "choice.json")]
     done = subprocess.run(words, cwd=REPOSITORY, capture_output=True, text=True, timeout=120)
     assert done.returncode == 1

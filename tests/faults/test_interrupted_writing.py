@@ -12,8 +12,8 @@ import pandas as pd
 import pytest
 from small_results import OTHER, Results
 
-from flexsurr.cli.frames import write_frame
 from flexsurr.storage import write_json
+from flexsurr.storage.frames import write_frame
 from flexsurr.surrogates import load, save
 from flexsurr.training.epochs import CHECKPOINT, write_checkpoint
 

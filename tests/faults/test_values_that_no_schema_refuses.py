@@ -6,7 +6,7 @@ import sys
 import pytest
 from small_results import PLAN, REPOSITORY, STUDY, VARIANT
 
-from flexsurr.cli import simulate
+from flexsurr.cli.trajectories import simulate
 from flexsurr.storage import read_shard
 from flexsurr.workflow.job_files import write_job
 
@@ -37,7 +37,7 @@ def test_a_simulation_that_leaves_the_numbers(whole, tmp_path):
     """Large momenta: the trajectory ends, its shard says so, and a dataset of such is refused."""
     job = JOBS["simulate"]()
     job["part"]["dataset"]["initial_conditions"]["p_max_kg_m2_s"] = 1e100
-    simulate.main(job, tmp_path / "shard-0000.parquet")
+    simulate(job, tmp_path / "shard-0000.parquet")
     shard = read_shard(tmp_path / "shard-0000.parquet")
     assert len(shard.metadata.failures) == shard.metadata.count
     job["part"]["dataset"]["initial_conditions"]["p_max_kg_m2_s"] = 1e200

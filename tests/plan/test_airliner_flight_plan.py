@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-from flexsurr.cli.flying import airliner_of, selected_networks
+from flexsurr.cli.flight import airliner_of, selected_networks
 from flexsurr.config.settings import load
 from flexsurr.workflow.plan import Plan
 

@@ -12,7 +12,7 @@ from mlflow import MlflowClient
 from run_folders import described, write_run
 
 import flexsurr
-from flexsurr.cli import store, track
+from flexsurr.cli.tracking import store, track
 from flexsurr.surrogates import Intervals, PolynomialHamiltonian, PolynomialMap, save_map
 from flexsurr.surrogates.scaling import PairScaling
 from flexsurr.tracking.store import read_store, store_uri
@@ -54,7 +54,7 @@ def choose(results: Path, key: str, error: float, **others: float) -> None:
 def results(tmp_path_factory) -> Path:
     """Results of two surrogates, of which the first is the champion."""
     results = tmp_path_factory.mktemp("results")
-    store.main({"uri": None, "studies": ["cantilever"]}, results / "mlflow/store.json")
+    store({"uri": None, "studies": ["cantilever"]}, results / "mlflow/store.json")
     for key, stiffness in (("hnn-1", 4.0), ("hnn-2", 9.0)):
         (results / "runs" / key).mkdir(parents=True)
         save_surrogate(oscillator(stiffness, key), results / "runs" / key / "weights.npz")
@@ -62,7 +62,7 @@ def results(tmp_path_factory) -> Path:
         with tracked(read_store(results / "mlflow/store.json"), described(key), folder) as trial:
             trial.keep()
     choose(results, "hnn-2", 3.0, **{"hnn-1": 0.5})
-    track.main(results, sync=False, uri=None)
+    track(results, sync=False, uri=None)
     return results
 
 
@@ -128,12 +128,12 @@ def test_nothing_of_it_is_pickled(results):
 
 def test_another_choice_is_another_version_and_the_first_again_is_none(results, tmp_path, loaded):
     moved = shutil.copytree(results, tmp_path / "moved")
-    store.main({"uri": None, "studies": ["cantilever"]}, moved / "mlflow/store.json")
+    store({"uri": None, "studies": ["cantilever"]}, moved / "mlflow/store.json")
     client = MlflowClient(store_uri(None, moved / "mlflow"))
     stiffness = {}
     for key in ("hnn-2", "hnn-2", "hnn-1"):
         choose(moved, key, 0.1)
-        track.main(moved, sync=False, uri=None)
+        track(moved, sync=False, uri=None)
         version = client.get_model_version_by_alias(MODEL, "champion")
         assert version.tags["flexsurr.run_id"] == key
         response = loaded(moved / "mlflow").predict(AT_REST, params=PARAMS)
@@ -144,7 +144,7 @@ def test_another_choice_is_another_version_and_the_first_again_is_none(results, 
 
 def test_a_moved_folder_keeps_its_champion(results, tmp_path, loaded):
     moved = shutil.copytree(results, tmp_path / "moved")
-    store.main({"uri": None, "studies": ["cantilever"]}, moved / "mlflow/store.json")
+    store({"uri": None, "studies": ["cantilever"]}, moved / "mlflow/store.json")
     away = results.rename(results.with_name("away"))
     try:
         response = loaded(moved / "mlflow").predict(AT_REST, params=PARAMS)
@@ -161,7 +161,7 @@ def test_of_maps_the_network_that_flies_is_the_champion(tmp_path):
         inputs, ("lift", "drag"), exponents, np.array([[1.0, 2.0], [0.5, 0.1], [3.0, 0.0]])
     )
     results = tmp_path / "results"
-    store.main({"uri": None, "studies": ["cantilever"]}, results / "mlflow/store.json")
+    store({"uri": None, "studies": ["cantilever"]}, results / "mlflow/store.json")
     (results / "runs/network-1").mkdir(parents=True)
     save_map(learned, results / "runs/network-1/weights.npz")
     folder = write_run(results / "runs", "network-1")
@@ -170,7 +170,7 @@ def test_of_maps_the_network_that_flies_is_the_champion(tmp_path):
     chosen = {label: {"run_id": "network-1", "validation_nmse": 2e-7} for label in ("network", "linear")}
     (results / "selected").mkdir()
     (results / "selected/cantilever.json").write_text(json.dumps(chosen))
-    track.main(results, sync=False, uri=None)
+    track(results, sync=False, uri=None)
     uri = store_uri(None, results / "mlflow")
     (name,) = [model.name for model in MlflowClient(uri).search_registered_models()]
     assert name == "cantilever-network"

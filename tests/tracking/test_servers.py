@@ -24,7 +24,7 @@ from mlflow import MlflowClient
 from run_folders import described, write_run
 from test_champion import MODEL, PARAMS, choose, oscillator
 
-from flexsurr.cli import store, track
+from flexsurr.cli.tracking import store, track
 from flexsurr.tracking.description import RUN_KEY
 from flexsurr.tracking.run_files import UNLOGGED
 from flexsurr.tracking.store import read_store
@@ -160,7 +160,7 @@ def test_four_writers_an_outage_and_a_champion(postgresql, tmp_path):
     results, port = tmp_path / "results", free_port()
     keys = [f"hnn-{number}" for number in range(4)]
     with serving(postgresql, tmp_path / "kept", port) as address:
-        store.main({"uri": address, "studies": ["cantilever"]}, results / "mlflow/store.json")
+        store({"uri": address, "studies": ["cantilever"]}, results / "mlflow/store.json")
         context = get_context("spawn")
         writers = [context.Process(target=train, args=(results, key)) for key in keys]
         for writer in writers:
@@ -182,7 +182,7 @@ def test_four_writers_an_outage_and_a_champion(postgresql, tmp_path):
     assert [path.parent.name for path in (results / "runs").glob(f"*/{UNLOGGED}")] == ["hnn-9"]
 
     with serving(postgresql, tmp_path / "kept", port) as address:
-        track.main(results, sync=True, uri=None)
+        track(results, sync=True, uri=None)
         assert runs_of(address) == dict.fromkeys([*keys, "hnn-9"], "FINISHED")
         mlflow.set_tracking_uri(address)
         try:
@@ -199,7 +199,7 @@ def test_a_database_without_a_server_keeps_artefacts_beside_the_results(postgres
         connection.autocommit = True
         connection.cursor().execute("CREATE DATABASE alone")
     uri = postgresql.replace("/postgres", "/alone")
-    store.main({"uri": uri, "studies": ["cantilever"]}, results / "mlflow/store.json")
+    store({"uri": uri, "studies": ["cantilever"]}, results / "mlflow/store.json")
     train(results, "hnn-1")
     assert runs_of(uri) == {"hnn-1": "FINISHED"}
     assert [*(results / "mlflow/artifacts/cantilever").rglob("weights.npz")] != []

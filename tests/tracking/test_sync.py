@@ -10,7 +10,7 @@ import pytest
 from mlflow import MlflowClient
 from run_folders import described, write_run, write_scores
 
-from flexsurr.cli import store, track
+from flexsurr.cli.tracking import store, track
 from flexsurr.storage import StorageError
 from flexsurr.tracking.description import RUN_KEY
 from flexsurr.tracking.run_files import UNLOGGED
@@ -24,7 +24,7 @@ AWAY = "http://127.0.0.1:9"
 def empty(tmp_path_factory) -> Path:
     """Results with a store in which there is nothing yet."""
     results = tmp_path_factory.mktemp("empty")
-    store.main({"uri": None, "studies": ["cantilever"]}, results / "mlflow/store.json")
+    store({"uri": None, "studies": ["cantilever"]}, results / "mlflow/store.json")
     return results
 
 
@@ -76,9 +76,9 @@ def test_runs_logged_from_their_files_are_as_if_they_had_told_of_themselves(resu
     elsewhere = shutil.copytree(empty, tmp_path / "elsewhere")
     for key, fit in (("hnn-1", {}), ("hnn-2", {"status": "failed", "reason": "the loss is nan"})):
         write_scores(train(results, key, **fit), long_response_error_percent_worst=0.5)
-    track.main(results, sync=False, uri=None)
+    track(results, sync=False, uri=None)
     shutil.copytree(results / "runs", elsewhere / "runs")
-    track.main(elsewhere, sync=True, uri=None)
+    track(elsewhere, sync=True, uri=None)
     assert content(elsewhere) == content(results)
     assert content(results)["hnn-1"][3]["long_response_error_percent_worst"] == 0.5
     assert content(results)["hnn-2"][0] == "FAILED"
@@ -87,35 +87,35 @@ def test_runs_logged_from_their_files_are_as_if_they_had_told_of_themselves(resu
 def test_what_is_there_is_not_logged_again(results):
     train(results, "hnn-1")
     write_run(results / "runs", "hnn-2")
-    track.main(results, sync=True, uri=None)
+    track(results, sync=True, uri=None)
     before = [run.to_dictionary() for run in page(results)[1]]
-    track.main(results, sync=True, uri=None)
+    track(results, sync=True, uri=None)
     assert [run.to_dictionary() for run in page(results)[1]] == before
 
 
 def test_a_run_trained_anew_is_logged_beside_the_old_one(results):
     write_run(results / "runs", "hnn-1")
-    track.main(results, sync=True, uri=None)
+    track(results, sync=True, uri=None)
     write_run(results / "runs", "hnn-1", train_nmse=0.5)
-    track.main(results, sync=True, uri=None)
+    track(results, sync=True, uri=None)
     found = [run.data.metrics.get("train_nmse") for run in page(results)[1] if RUN_KEY in run.data.tags]
     assert sorted(found) == [1e-9, 0.5]
 
 
 def test_a_store_away_while_training_is_said_and_made_up_for(results, capsys):
-    store.main({"uri": AWAY, "studies": ["cantilever"]}, results / "mlflow/store.json")
+    store({"uri": AWAY, "studies": ["cantilever"]}, results / "mlflow/store.json")
     folder = train(results, "hnn-1")
     assert (folder / UNLOGGED).exists()
-    track.main(results, sync=False, uri=None)
+    track(results, sync=False, uri=None)
     said = "cantilever: not logged: 1 run, scores, figures and champions; flexsurr track --sync logs them"
     assert said in capsys.readouterr().err
     with pytest.raises(StorageError, match="not all of it is on the page"):
-        track.main(results, sync=True, uri=None)
-    track.main(results, sync=True, uri=store_uri(None, results / "mlflow"))
+        track(results, sync=True, uri=None)
+    track(results, sync=True, uri=store_uri(None, results / "mlflow"))
     assert not (folder / UNLOGGED).exists()
     assert set(content(results)) == {"hnn-1"}
     capsys.readouterr()
-    track.main(results, sync=False, uri=None)
+    track(results, sync=False, uri=None)
     assert "not logged" not in capsys.readouterr().err
 
 
@@ -138,7 +138,7 @@ def test_figures_are_artefacts_of_the_parent_run(results):
     (figures / "figure_03.png").write_bytes(b"one")
     for picture in (b"one", b"another"):
         (figures / "figure_03.png").write_bytes(picture)
-        track.main(results, sync=False, uri=None)
+        track(results, sync=False, uri=None)
         client, _ = page(results)
         parent = read_store(results / "mlflow/store.json").parents["cantilever"]
         assert [file.path for file in client.list_artifacts(parent, "figures")] == ["figures/figure_03.png"]
@@ -148,16 +148,16 @@ def test_figures_are_artefacts_of_the_parent_run(results):
 def test_a_damaged_run_is_a_warning_and_the_others_are_logged(results, caplog):
     write_run(results / "runs", "hnn-1")
     (write_run(results / "runs", "hnn-2") / "fit.json").write_text("{")
-    track.main(results, sync=True, uri=None)
+    track(results, sync=True, uri=None)
     assert "hnn-2/fit.json: damaged" in caplog.text
     assert set(content(results)) == {"hnn-1"}
 
 
 def test_a_study_that_the_store_does_not_know_waits_for_a_sync(results):
     write_run(results / "runs", "hnn-1", "wing")
-    track.main(results, sync=False, uri=None)
+    track(results, sync=False, uri=None)
     assert "wing" not in read_store(results / "mlflow/store.json").experiments
-    track.main(results, sync=True, uri=None)
+    track(results, sync=True, uri=None)
     assert set(read_store(results / "mlflow/store.json").experiments) == {"cantilever", "wing"}
 
 
@@ -166,5 +166,5 @@ def test_a_selection_without_its_run_registers_nothing(results, caplog):
     (results / "selected").mkdir()
     entry = {"run_id": "hnn-gone", "long_response_error_percent_worst": 1.0}
     (results / "selected/cantilever.json").write_text(json.dumps({"hamiltonian": {"hnn": entry}}))
-    track.main(results, sync=False, uri=None)
+    track(results, sync=False, uri=None)
     assert "hnn-gone/weights.npz: cannot be read" in caplog.text

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from project import Project
 
-from flexsurr.cli.alone import alone_in
+from flexsurr.storage.lock import locked
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 PARTS = ("Snakefile", "workflow", "profiles", "config", "examples")
@@ -44,7 +44,7 @@ def quick(make_project, tmp_path_factory, worker_id) -> Project:
     """
     temporary = tmp_path_factory.getbasetemp()
     shared = (temporary if worker_id == "master" else temporary.parent) / "quick"
-    with alone_in(shared):
+    with locked(shared):
         if (shared / "done").exists():
             return Project(shared / "project", REPOSITORY)
         (shared / "project").mkdir()

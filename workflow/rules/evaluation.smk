@@ -48,7 +48,7 @@ rule learn_load:
         runtime=60,
     params:
         job=job("learn_load", "study", "variant"),
-        code=code("learn_load"),
+        code=code("learn-load"),
     message:
         "learning the load of {wildcards.study}, {wildcards.variant}"
     shell:
@@ -131,7 +131,7 @@ rule rollout_cost:
         runtime=240,
     params:
         job=job("rollout_cost", "study"),
-        code=code("rollout_cost"),
+        code=code("rollout-cost"),
         runs=f"{RESULTS}/runs",
     message:
         "timing rollouts of {wildcards.study}"

@@ -83,7 +83,7 @@ rule fly_randomly:
         runtime=240,
     params:
         job=job("fly", "study"),
-        code=code("fly_randomly"),
+        code=code("fly-randomly"),
         runs=f"{RESULTS}/runs",
     message:
         "timing random flights of {wildcards.study}"

@@ -10,6 +10,7 @@ from pathlib import Path
 from snakemake.exceptions import WorkflowError
 from snakemake.logging import logger
 
+from flexsurr.cli.index import function_of
 from flexsurr.config.errors import ConfigurationError
 from flexsurr.config.settings import load
 from flexsurr.workflow.batches import outdated
@@ -88,7 +89,7 @@ def needed(files):
 @cache
 def code(command):
     """The digest of the code behind a command, so that editing it runs its jobs again."""
-    return code_digest(f"flexsurr.cli.{command.replace('-', '_')}")
+    return code_digest(function_of(command))
 
 
 def caption_file(name):

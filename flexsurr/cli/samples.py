@@ -1,4 +1,4 @@
-"""Sample one shard of the airliner's aerodynamics: the rebuilt lattice at random features."""
+"""Samples of the airliner's aerodynamics."""
 
 import logging
 from pathlib import Path
@@ -7,7 +7,8 @@ from flexsurr.aerodynamics.features import COEFFICIENT_UNITS, COEFFICIENTS, FEAT
 from flexsurr.aerodynamics.modal_linearisation import linear_in_modes
 from flexsurr.aerodynamics.sampling import draw_features, feature_intervals
 from flexsurr.aerodynamics.vortex_lattice import rebuilt
-from flexsurr.cli.command import Job, command
+from flexsurr.cli.batch import make_all, shards_of
+from flexsurr.cli.command import Job, for_rules
 from flexsurr.config.aircraft import Aircraft
 from flexsurr.config.feature_limits import FeatureLimits
 from flexsurr.config.panels import PanelCounts
@@ -21,8 +22,12 @@ from flexsurr.storage import SampleMetadata, Samples, write_samples
 log = logging.getLogger(__name__)
 
 
-def main(job: Job, output: Path) -> None:
-    """Write the samples `first` to `first + count − 1` of the job's sequence."""
+@for_rules(output="the shard")
+def sample(job: Job, output: Path) -> None:
+    """Sample one shard of the airliner's aerodynamics: the rebuilt lattice at random features.
+
+    It holds the samples `first` to `first + count − 1` of the job's sequence.
+    """
     aircraft = part_of(Aircraft, job["aircraft"])
     modes = free_modes(stick_model(aircraft), job["elastic_modes"])
     airframe = flexible_airframe(
@@ -57,5 +62,10 @@ def main(job: Job, output: Path) -> None:
     log.info("%s: %d samples of %d panels", output, len(u), len(airframe.lattice))
 
 
-if __name__ == "__main__":
-    command(main, {"output": "the shard"})
+@for_rules(results="the folder of results", output="what is made")
+def sample_shards(job: Job, results: Path, output: Path) -> None:
+    """Sample many shards of the airliner's aerodynamics, one after another: those that are not there.
+
+    They lie below `results`; `output` lists them.
+    """
+    make_all(shards_of(job, results, sample), results, output)

@@ -1,24 +1,26 @@
-"""Write the user's own files into one shard of a dataset."""
+"""Datasets as files: read from the user's own, and the manifest that vouches for the shards of one."""
 
 import logging
 from pathlib import Path
 
 import numpy as np
 
-from flexsurr.cli.command import Job, command
+from flexsurr.cli.command import Job, for_rules
 from flexsurr.config.files import Columns, Filter
-from flexsurr.storage import Shard, ShardMetadata, StorageError, write_shard
-from flexsurr.storage.source_files import filtered, read_recordings
+from flexsurr.storage import Shard, ShardMetadata, StorageError, build_manifest, write_manifest, write_shard
 
 log = logging.getLogger(__name__)
 
 
-def main(job: Job, output: Path) -> None:
-    """Write the shard of the trajectories in the job's files, numbered in their order.
+@for_rules(output="the shard")
+def ingest(job: Job, output: Path) -> None:
+    """Write the user's own files into one shard of a dataset.
 
-    StorageError names each file that has changed since the job was planned, or is not as `read_recordings`
-    wants it.
+    Trajectories are numbered in the order of the job's files. StorageError names each file that has changed
+    since the job was planned, or is not as `read_recordings` wants it.
     """
+    from flexsurr.storage.source_files import filtered, read_recordings  # here, for they read by pandas
+
     columns = Columns.model_validate(job["columns"])
     found = read_recordings(Path(), list(job["files"]), columns)
     changed = [file for file, sha256 in job["files"].items() if found.sha256[file] != sha256]
@@ -56,5 +58,14 @@ def main(job: Job, output: Path) -> None:
     log.info("%s: %d trajectories, %d samples", output, len(trajectories), len(shard.t))
 
 
-if __name__ == "__main__":
-    command(main, {"output": "the shard"})
+@for_rules(folder="of the shards", output="the manifest")
+def manifest(job: Job, folder: Path, output: Path) -> None:
+    """Check the shards of a dataset and write the manifest that vouches for them.
+
+    `folder` has as many as the job says. StorageError names every shard that does not belong to the dataset.
+    """
+    expected = dict(job)
+    shards = [folder / f"shard-{number:04d}.parquet" for number in range(expected.pop("shards"))]
+    manifest = build_manifest(shards, **expected)
+    write_manifest(output, manifest)
+    log.info("%s: %d trajectories, %d samples", output, manifest.trajectories, manifest.samples)

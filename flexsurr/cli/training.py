@@ -1,30 +1,41 @@
-"""One trial trained, tracked, and written to its run's folder, whatever it is trained on."""
+"""One trial trained, tracked, and written to the folder of its run."""
 
 import logging
 import math
+import subprocess
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from flexsurr.cli.alone import alone_in
-from flexsurr.cli.command import Job
-from flexsurr.cli.commit import commit
-from flexsurr.cli.frames import write_frame
-from flexsurr.config.trial import Iterative, Map, Trial, settings_of
-from flexsurr.storage import write_json
+import numpy as np
+
+from flexsurr.beam import EquilibriumNotFound, ModalBasis, reduce
+from flexsurr.cli.command import Job, for_rules
+from flexsurr.config.part import part_of
+from flexsurr.config.structure import Structure
+from flexsurr.config.study import Study
+from flexsurr.config.trial import Iterative, Map, Trial, configurations_of, settings_of, trial_of
+from flexsurr.storage import read_all_samples, read_manifest, write_json
+from flexsurr.storage.frames import write_frame
+from flexsurr.storage.lock import locked
+from flexsurr.surrogates import Surrogate, save_map
 from flexsurr.tracking.store import read_store
 from flexsurr.tracking.trial import tracked
-from flexsurr.training import Fit
+from flexsurr.training import Fit, ShardedDataset, fit
+from flexsurr.training.configuration_samples import configuration_samples
+from flexsurr.training.dataset import SampleSource
 from flexsurr.training.epochs import Report
+from flexsurr.training.saved_surrogate import SavedSurrogate, save_surrogate
 from flexsurr.training.sweep import run_id
 
 log = logging.getLogger(__name__)
 
 PROGRESS_EVERY_S = 5.0
+GIT_PATIENCE_S = 5.0
 
-FILES = {"store": "the address of the tracking store", "folder": "of the run"}
+RUN = {"store": "the address of the tracking store", "folder": "of the run"}
 """What both commands that train are given beside their data."""
 
 
@@ -37,13 +48,71 @@ class Task:
     save: Callable[[Any, Path], None]
 
 
-def run(job: Job, trial: Trial, task: Callable[[], Task], store: Path, folder: Path) -> None:
+@for_rules(EquilibriumNotFound, data="the folder of the dataset; none for configurations", **RUN)
+def train(job: Job, data: list[Path], store: Path, folder: Path) -> None:
+    """Train one surrogate of a field: a trial of a sweep on one dataset.
+
+    The dataset is in the folder `data`; a trial that samples configurations has none.
+    """
+    trial = trial_of(**job["trial"])
+    _locked_run(job, trial, lambda: _field_task(job, trial, data, folder), store, folder)
+
+
+def _field_task(job: Job, trial: Trial, data: list[Path], folder: Path) -> Task:
+    basis, configurations = _basis(job), configurations_of(trial)
+    dataset: SampleSource
+    if configurations is None or basis is None:
+        dataset = ShardedDataset(read_manifest(data[0] / "manifest.json"))
+    else:
+        ranges = part_of(Study, job["part"]).dataset.initial_conditions
+        dataset = configuration_samples(basis, job["variant"], ranges, configurations)
+    low, high = (
+        np.array(values)[: len(dataset.state_names)] for values in (dataset.scales.low, dataset.scales.high)
+    )
+
+    def save(surrogate: Surrogate, path: Path) -> None:
+        saved = SavedSurrogate(surrogate, job["study"], job["variant"], job["run_id"], low, high, basis)
+        save_surrogate(saved, path)
+
+    return Task(dataset.sha256, lambda report: fit(trial, dataset, folder, report), save)
+
+
+def _basis(job: Job) -> ModalBasis | None:
+    """The modes of the study's structure; None where its data are the user's own."""
+    if "structure" not in job:
+        return None
+    return reduce(Structure.model_validate(job["structure"]), part_of(Study, job["part"]).reduction)
+
+
+@for_rules(data="the folder of the samples", **RUN)
+def train_map(job: Job, data: list[Path], store: Path, folder: Path) -> None:
+    """Train one surrogate of a map: a trial of a sweep on samples.
+
+    The samples are in the folder `data`.
+    """
+    trial = trial_of(**job["trial"])
+    assert isinstance(trial, Map)  # a study of samples has no others
+    _locked_run(job, trial, lambda: _map_task(job, trial, data[0], folder), store, folder)
+
+
+def _map_task(job: Job, trial: Map, data: Path, folder: Path) -> Task:
+    # here, for it takes a second that no field needs
+    from flexsurr.training import fit_map
+    from flexsurr.training.map_data import map_data
+
+    shards = [data / f"shard-{number:04d}.parquet" for number in range(job["shards"])]
+    samples = read_all_samples(shards, job["configuration"], job["samples"])
+    dataset = map_data(samples, job["held_out"], job["seed"])
+    return Task(dataset.sha256, lambda report: fit_map(trial, dataset, folder, report), save_map)
+
+
+def _locked_run(job: Job, trial: Trial, task: Callable[[], Task], store: Path, folder: Path) -> None:
     """Write parameters.json, fit.json, history.parquet, weights.npz and best.npz of the run into `folder`.
 
     weights.npz holds what the trial keeps, best.npz what validated best. A trial that diverges ends well,
     with status "failed", its reason, and the best weights it met; so does one that is given up: "stopped".
     """
-    with alone_in(folder):
+    with locked(folder):
         _run(job, trial, task(), store, folder)
 
 
@@ -93,7 +162,7 @@ def _figures(job: Job, trial: Trial, result: Fit, dataset_sha256: str) -> dict[s
         "hidden": "x".join(str(width) for width in settings["hidden"] or ()),
         "options": ", ".join(f"{name}={value}" for name, value in (settings.get("options") or {}).items())
         or None,
-        "give_up": _words(trial),
+        "give_up": _give_up(trial),
         "epoch_limit": settings["epochs"],
         "epochs": result.epochs,
         "best_epoch": result.best_epoch,
@@ -108,7 +177,7 @@ def _figures(job: Job, trial: Trial, result: Fit, dataset_sha256: str) -> dict[s
     } | _of_its_kind(trial, result)
 
 
-def _words(trial: Trial) -> str | None:
+def _give_up(trial: Trial) -> str | None:
     """When the trial is to give up, if ever, as tables say it."""
     by = trial.give_up if isinstance(trial, Iterative) else None
     return None if by is None else str(by)
@@ -128,3 +197,14 @@ def _finite(value: float) -> float | None:
 
 def _because(reason: str) -> str:
     return f": {reason}" if reason else ""
+
+
+def commit() -> str | None:
+    """The hash of the commit that the current folder has checked out; None where there is none, or no git."""
+    try:
+        asked = subprocess.run(
+            ["git", "rev-parse", "--verify", "HEAD"], capture_output=True, text=True, timeout=GIT_PATIENCE_S
+        )
+    except (OSError, subprocess.SubprocessError):
+        return None
+    return asked.stdout.strip() if asked.returncode == 0 else None

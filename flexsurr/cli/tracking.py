@@ -1,4 +1,4 @@
-"""Bring the page of runs up to date with the files of the results, and say what it lacks."""
+"""The page of runs: made before the first job, and brought up to date with the files of the results."""
 
 import argparse
 import logging
@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from flexsurr import __version__
-from flexsurr.cli.command import personal
+from flexsurr.cli.command import Job, for_people, for_rules
 from flexsurr.config.errors import ConfigurationError
 from flexsurr.storage import StorageError, read_json
 from flexsurr.tracking.champion import Champion, Interface, is_registered, register
@@ -20,11 +20,29 @@ from flexsurr.training.selection import ERROR
 
 log = logging.getLogger(__name__)
 
+
+@for_rules(output="the address of the store and what is in it")
+def store(job: Job, output: Path) -> None:
+    """Create the tracking store, once and before anything writes to it.
+
+    It lies beside `output`, which says how to reach it. A store that cannot be reached is a warning: its
+    address alone is written, and results are made without it. So is a folder that cannot be written to, of
+    which the first job will have more to say.
+    """
+    folder = output.parent
+    uri = store_uri(job["uri"], folder)
+    store = create_store(uri, folder, job["studies"]) or Store(uri, {}, {})
+    try:
+        write_store(output, store)
+    except OSError as error:
+        log.warning("tracking: %s: %s; results are made without it", output, error.strerror)
+
+
 MAP = "network"
 """The label of the chosen map of a study of samples."""
 
 
-def arguments(parser: argparse.ArgumentParser) -> None:
+def _track_arguments(parser: argparse.ArgumentParser) -> None:
     """The results, and what is to be done about what the page lacks."""
     parser.add_argument(
         "--results", type=Path, default=Path("results"), metavar="FOLDER", help="by default results"
@@ -39,8 +57,11 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def main(results: Path, sync: bool, uri: str | None) -> None:
-    """Log scores, figures and champions that the page lacks, and with `sync` whole runs.
+@for_people(_track_arguments)
+def track(results: Path, sync: bool, uri: str | None) -> None:
+    """Bring the page of runs up to date with the files of the results, and say what it lacks.
+
+    Logs scores, figures and champions that the page lacks, and with `sync` whole runs.
 
     A line for each study says what it lacks then. Raises StorageError if that is so in spite of `sync`.
     """
@@ -132,7 +153,3 @@ def _chosen(selection: Path) -> Iterator[tuple[str, dict[str, Any]]]:
         named = [entry for entry in chosen.values() if isinstance(entry, dict)]
         if named:
             yield f"{study}-{of_what}", min(named, key=lambda entry: entry[ERROR])
-
-
-if __name__ == "__main__":
-    personal(main, arguments)

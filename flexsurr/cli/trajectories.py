@@ -1,4 +1,4 @@
-"""Simulate one shard of a dataset: free responses of the reduced-order model from random states."""
+"""Datasets of simulated trajectories."""
 
 import logging
 from pathlib import Path
@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 
 from flexsurr.beam import EquilibriumNotFound, draw_initial_conditions, reduce, reduced_order
-from flexsurr.cli.command import Job, command
+from flexsurr.cli.batch import make_all, shards_of
+from flexsurr.cli.command import Job, for_rules
 from flexsurr.config.part import part_of
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Study
@@ -16,9 +17,16 @@ from flexsurr.storage import Shard, ShardMetadata, write_shard
 
 log = logging.getLogger(__name__)
 
+REFUSED = (EquilibriumNotFound, ArithmeticError)
+"""What a shard that cannot be simulated raises."""
 
-def main(job: Job, output: Path) -> None:
-    """Write the shard with the trajectories `first` to `first + count − 1` of the job's dataset."""
+
+@for_rules(*REFUSED, output="the shard")
+def simulate(job: Job, output: Path) -> None:
+    """Simulate one shard of a dataset: free responses of the reduced-order model from random states.
+
+    It holds the trajectories `first` to `first + count − 1` of the job's dataset.
+    """
     study, first, count = part_of(Study, job["part"]), job["first"], job["count"]
     dataset = study.dataset
     basis = reduce(Structure.model_validate(job["structure"]), study.reduction)
@@ -64,5 +72,10 @@ def main(job: Job, output: Path) -> None:
     log.info("%s: %d trajectories, %d samples, %d failed", output, count, len(shard.t), len(failures))
 
 
-if __name__ == "__main__":
-    command(main, {"output": "the shard"}, expected=(EquilibriumNotFound, ArithmeticError))
+@for_rules(results="the folder of results", output="what is made")
+def shards(job: Job, results: Path, output: Path) -> None:
+    """Simulate many shards of a dataset, one after another: those of a batch that are not there.
+
+    They lie below `results`; `output` lists them.
+    """
+    make_all(shards_of(job, results, simulate), results, output, REFUSED)

@@ -8,14 +8,14 @@ import sys
 
 import pytest
 
-from flexsurr.cli.alone import NO_LOCKS, alone_in
+from flexsurr.storage.lock import NO_LOCKS, locked
 
-SECOND = "import sys; from pathlib import Path; from flexsurr.cli.alone import alone_in\n"
-SECOND += "with alone_in(Path(sys.argv[1])): print('inside', flush=True)"
+SECOND = "import sys; from pathlib import Path; from flexsurr.storage.lock import locked\n"
+SECOND += "with locked(Path(sys.argv[1])): print('inside', flush=True)"
 
 
 def test_a_second_process_waits_for_the_first(tmp_path):
-    with alone_in(tmp_path):
+    with locked(tmp_path):
         second = subprocess.Popen([sys.executable, "-c", SECOND, tmp_path], stdout=subprocess.PIPE, text=True)
         with pytest.raises(subprocess.TimeoutExpired):
             second.wait(3)
@@ -28,7 +28,7 @@ def test_a_file_system_without_locks_is_one_warning(tmp_path, monkeypatch, caplo
         raise OSError(number, "no locks")
 
     monkeypatch.setattr(fcntl, "flock", refuse)
-    with caplog.at_level(logging.WARNING), alone_in(tmp_path / "run"):
+    with caplog.at_level(logging.WARNING), locked(tmp_path / "run"):
         pass
     assert [record.getMessage() for record in caplog.records] == [
         f"{tmp_path / 'run'}: no locks here (no locks); goes on without one"
@@ -40,5 +40,5 @@ def test_any_other_trouble_with_locks_passes(tmp_path, monkeypatch):
         raise OSError(errno.EIO, "input/output error")
 
     monkeypatch.setattr(fcntl, "flock", refuse)
-    with pytest.raises(OSError, match="input/output"), alone_in(tmp_path):
+    with pytest.raises(OSError, match="input/output"), locked(tmp_path):
         pass

@@ -1,18 +1,67 @@
-"""Begin a study of a beam of your own: write its structure, sweep and study, with comments, ready to run."""
+"""What a person does before a study runs: begin one, check it, look up a key."""
 
 import argparse
 import re
+import sys
 from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
 
 from flexsurr.beam import EquilibriumNotFound
-from flexsurr.cli.command import personal
+from flexsurr.beam.soundness import unit_hint
+from flexsurr.cli.command import for_people
+from flexsurr.config.reference import reference as all_keys
 from flexsurr.config.section import MATERIALS, Material, rectangle
+from flexsurr.config.settings import load
 from flexsurr.config.structure import JOINTS, Joint, Structure
 from flexsurr.evaluation.new_study import damping_s, study_files
 from flexsurr.storage import replacing
+from flexsurr.workflow.plan import AnyPlan, Plan
+from flexsurr.workflow.sample_plan import SamplePlan
+from flexsurr.workflow.trajectory_plan import TrajectoryPlan
+
+CONFIG = Path("config/config.yaml")
+
+
+def _check_arguments(parser: argparse.ArgumentParser) -> None:
+    """The files to lay on top of config/config.yaml."""
+    parser.add_argument(
+        "--configfile",
+        nargs="*",
+        default=[],
+        metavar="FILE",
+        help="laid on top of config/config.yaml in this order, as snakemake --configfile does",
+    )
+    parser.add_argument(
+        "--directory", type=Path, default=Path(), help="that holds the Snakefile; by default this one"
+    )
+
+
+@for_people(_check_arguments)
+def check(configfile: list[str], directory: Path) -> None:
+    """Check the configuration as snakemake would, and say what it would make.
+
+    Prints a line for each study, and on stderr what looks odd of its structure. Raises ConfigurationError
+    with a line for each mistake.
+    """
+    plan = Plan(load(directory, [str(CONFIG), *configfile]))
+    for name, study in plan.studies.items():
+        print(f"{name}: {_data(study)}, {len(study.runs)} runs")
+        if isinstance(study, TrajectoryPlan) and (hint := unit_hint(study.resolved.structure)):
+            print(f"{name}: {hint}", file=sys.stderr)
+
+
+def _data(study: AnyPlan) -> str:
+    """What a study learns from, in a few words."""
+    match study:
+        case TrajectoryPlan(variants=variants, resolved=resolved):
+            datasets = len(resolved.study.datasets)
+            return f"{resolved.structure.name}, {len(variants)} variants, {datasets} datasets each"
+        case SamplePlan():
+            return f"{len(study.datasets())} sets of samples"
+    return f"{len(study.sources)} files"
+
 
 KEYS = {
     "length": "length_m",
@@ -37,7 +86,7 @@ JOINT_OF: dict[str, Joint] = {
 """The joint that an option's stiffness is of."""
 
 
-def arguments(parser: argparse.ArgumentParser) -> None:
+def _new_study_arguments(parser: argparse.ArgumentParser) -> None:
     """What the beam is."""
     parser.add_argument("name", help="of the study and of its files: letters, digits, hyphens, underscores")
     parser.add_argument("--length", type=float, required=True, metavar="M", help="span [m]")
@@ -79,8 +128,12 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def main(name: str, directory: Path, modes: int | None, damping: float, **given: Any) -> None:
-    """Write the files, and say how to go on. ValueError for what makes no beam, or exists already."""
+@for_people(_new_study_arguments, ValueError, EquilibriumNotFound)
+def new_study(name: str, directory: Path, modes: int | None, damping: float, **given: Any) -> None:
+    """Begin a study of a beam of your own: write its structure, sweep and study, with comments, ready to run.
+
+    ValueError for what makes no beam, or exists already.
+    """
     if not re.fullmatch(r"[A-Za-z][\w-]*", name, re.ASCII):
         raise ValueError(
             f"{name!r} is no name; allowed: a letter, then letters, digits, hyphens, underscores"
@@ -179,5 +232,19 @@ def _in_options(error: ValidationError) -> str:
     return f"{option}: {problem['input']} is not allowed; allowed: {allowed}"
 
 
-if __name__ == "__main__":
-    personal(main, arguments, expected=(ValueError, EquilibriumNotFound))
+def _reference_arguments(parser: argparse.ArgumentParser) -> None:
+    """Where it goes."""
+    parser.add_argument("--output", type=Path, metavar="FILE", help="written to it; by default printed")
+
+
+@for_people(_reference_arguments)
+def reference(output: Path | None) -> None:
+    """Every key that a configuration may hold, with meaning, unit, default and what is allowed, as Markdown.
+
+    Raises LookupError for a key without a description.
+    """
+    text = all_keys()
+    if output is None:
+        print(text, end="")
+    else:
+        output.write_text(text, encoding="utf-8")

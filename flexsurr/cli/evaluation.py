@@ -1,0 +1,152 @@
+"""What the selected surrogates of a beam are worth, and what they cost, beside its reference model."""
+
+import logging
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from flexsurr.beam import EquilibriumNotFound, ModalBasis, reduce
+from flexsurr.cli.command import Job, for_rules
+from flexsurr.cli.runs import SELECTED, most_accurate, selected_runs, selected_surrogates
+from flexsurr.config.part import part_of
+from flexsurr.config.structure import Structure
+from flexsurr.config.study import Study
+from flexsurr.evaluation.cases import Response, evaluation_cases
+from flexsurr.evaluation.contenders import with_learned_loads
+from flexsurr.evaluation.cost import cost_table
+from flexsurr.evaluation.energy import energy_table
+from flexsurr.evaluation.learned_loads import learn_forces, learned_load_table
+from flexsurr.evaluation.published import is_of_the_recipe
+from flexsurr.evaluation.responses import response_table
+from flexsurr.evaluation.shapes import shapes_table
+from flexsurr.evaluation.statics import natural_frequencies, static_tip
+from flexsurr.evaluation.validation import validation_table
+from flexsurr.storage.frames import write_frame
+from flexsurr.surrogates import load_map, save_map
+from flexsurr.training import load_dataset
+
+log = logging.getLogger(__name__)
+
+ANIMATED_PERIODS = 5.0
+FRAMES = 150
+
+
+@for_rules(
+    EquilibriumNotFound,
+    statics="tip positions",
+    frequencies="natural frequencies",
+    shapes="shapes",
+)
+def statics(job: Job, statics: Path, frequencies: Path, shapes: Path) -> None:
+    """Static deflection under dead loads, natural frequencies, and shapes (Fig. 8, Table 3)."""
+    study, basis = _reduced(job)
+    others = [Structure.model_validate(values) for values in job["frequencies_also_of"]]
+    bases = [basis, *(reduce(structure, study.reduction) for structure in others)]
+    write_frame(statics, static_tip(study, basis))
+    write_frame(frequencies, pd.concat([natural_frequencies(each) for each in bases], ignore_index=True))
+    write_frame(shapes, shapes_table(study, basis))
+
+
+@for_rules(EquilibriumNotFound, output="the responses")
+def validate(job: Job, output: Path) -> None:
+    """Full and reduced order side by side under the study's tip force, both variants (Fig. 9)."""
+    write_frame(output, validation_table(*_reduced(job)))
+
+
+@for_rules(
+    EquilibriumNotFound,
+    ArithmeticError,
+    **SELECTED,
+    free="the free response",
+    forced="the forced response",
+    sustained="the response to the longest load",
+    energy="the energies",
+)
+def respond(
+    job: Job, selection: Path, runs: Path, free: Path, forced: Path, sustained: Path, energy: Path
+) -> None:
+    """Responses of the selected surrogates beside the reference's; their energies (Figs. 10, 12 to 15)."""
+    study, basis = _reduced(job)
+    surrogates = selected_surrogates(selection, job["variant"], runs)
+    responses: dict[Response, Path] = {"free": free, "forced": forced, "sustained": sustained}
+    for response, path in responses.items():
+        write_frame(path, response_table(study, basis, job["variant"], response, surrogates))
+    write_frame(energy, energy_table(study, basis, job["variant"], surrogates))
+
+
+@for_rules(
+    EquilibriumNotFound,
+    ValueError,
+    manifest="of the dataset whose configurations are learned from",
+    polynomial="the forces as a polynomial",
+    network="the forces as a network",
+    errors="the held-out errors",
+)
+def learn_load(job: Job, manifest: Path, polynomial: Path, network: Path, errors: Path) -> None:
+    """Learn the generalised forces of a study's load, and say what they err by.
+
+    They are learned from the training trajectories, and held against the others.
+    """
+    study, basis = _reduced(job)
+    dataset = load_dataset(manifest)
+    r = basis.modes.shape[1]
+    eta, held_out = dataset.x_train[:, :r], dataset.x_validation[:, :r]
+    learned = learn_forces(basis, study.evaluation, eta, held_out)
+    table = learned_load_table(job["study"], basis, job["variant"], learned, held_out)
+    for row in table.itertuples():
+        log.info("%s, %s: force within %.2e of its size", row.map, row.form, row.force_relative_error)
+    save_map(learned.polynomial, polynomial)
+    save_map(learned.network, network)
+    write_frame(errors, table)
+
+
+@for_rules(EquilibriumNotFound, ArithmeticError, **SELECTED, loads="learned loads", output="the cost table")
+def evaluate(job: Job, selection: Path, runs: Path, loads: list[Path], output: Path) -> None:
+    """Time and judge every model, implementation and integrator under one response; alone on the machine.
+
+    `loads` are maps to generalised forces, under which the most accurate surrogate stands in the table once
+    more; the name of the file is added to its own.
+    """
+    study, basis = _reduced(job)
+    variant = job["variant"]
+    surrogates = selected_surrogates(selection, variant, runs)
+    best = most_accurate(selection, variant)
+    maps = {path.stem: load_map(path) for path in loads}
+    learned = [] if best is None else with_learned_loads(best, surrogates[best], maps)
+    recipes = {
+        name: run["architecture"]
+        for name, run in selected_runs(selection, variant).items()
+        if is_of_the_recipe(run)
+    }
+    table = cost_table(job["study"], study, basis, variant, job["response"], surrogates, learned, recipes)
+    write_frame(output, table)
+
+
+@for_rules(EquilibriumNotFound, ArithmeticError, ValueError, **SELECTED, output="the GIF or HTML page")
+def watch(job: Job, selection: Path, runs: Path, output: Path) -> None:
+    """Animate the first free response of the selected surrogates beside the reference's.
+
+    It lasts five periods of the slowest mode, or as long as the study's own responses where they are shorter.
+    """
+    from flexsurr import library  # here: it draws, which no other command of this file does
+
+    study, basis = _reduced(job)
+    x0 = evaluation_cases(basis, study, "free")[0].x0
+    period_s = 2.0 * np.pi / float(basis.omega_rad_s[0])
+    duration_s = min(study.evaluation.duration_s, ANIMATED_PERIODS * period_s)
+    given: dict[str, Any] = {"duration_s": duration_s, "step_s": duration_s / FRAMES, "initial": x0}
+    responses: list[library.Response] = []
+    for name, run in selected_runs(selection, job["variant"]).items():
+        surrogate = library.load_surrogate(runs / run["run_id"] / "weights.npz")
+        if not responses:
+            responses.append(surrogate.reference(**given))
+        responses.append(surrogate.simulate(**given).called(name))
+    library.animate(responses, output, f"{job['study']}, {job['variant']}: free response")
+
+
+def _reduced(job: Job) -> tuple[Study, ModalBasis]:
+    """The job's part of the study, and the modes of its structure."""
+    study = part_of(Study, job["part"])
+    return study, reduce(Structure.model_validate(job["structure"]), study.reduction)

@@ -1,0 +1,138 @@
+"""Scores of runs, and the choice among them."""
+
+import json
+import logging
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from flexsurr.beam import EquilibriumNotFound, reduce
+from flexsurr.cli.command import Job, for_rules
+from flexsurr.cli.runs import read_run
+from flexsurr.config.files import FilesStudy
+from flexsurr.config.part import part_of
+from flexsurr.config.structure import Structure
+from flexsurr.config.study import Study
+from flexsurr.evaluation.held_out import held_out_errors
+from flexsurr.evaluation.rollouts import HeldOutTrajectories, rollout_errors
+from flexsurr.evaluation.selection import long_response_errors, long_responses
+from flexsurr.storage import read_manifest, write_json
+from flexsurr.surrogates import load
+from flexsurr.training import load_dataset
+from flexsurr.training.selection import select as select_fields
+from flexsurr.training.selection import select_maps
+
+log = logging.getLogger(__name__)
+
+Errors = Callable[[Any], dict[str, Any]]
+"""The errors of a surrogate's long responses, by their names in its metrics."""
+
+
+@for_rules(
+    EquilibriumNotFound,
+    ArithmeticError,
+    fit="what training says of the run",
+    weights="the surrogate that it keeps",
+    best="the one that validated best",
+    manifest="the dataset to score it on",
+    output="its metrics",
+)
+def score(job: Job, fit: Path, weights: Path, best: Path, manifest: list[Path], output: Path) -> None:
+    """Score one run: its field on held-out samples, and long responses that no training has seen.
+
+    `output` gets the run's metrics: what training says of it and, unless that failed, its scores. `manifest`
+    is that of the dataset on whose held-out samples every surrogate of the variant is scored. Where the run
+    keeps its last weights, those that validated best are scored too, as `best_…`.
+    """
+    metrics = read_run(fit) | _setting(job)
+    if metrics["status"] == "finished":
+        surrogate = load(weights)
+        errors = _beside_reference(job) if "structure" in job else _beside_recordings(job, manifest[0])
+        metrics |= held_out_errors(surrogate, load_dataset(manifest[0]))
+        metrics |= errors(surrogate)
+        if metrics["keep"] == "last":
+            metrics |= {f"best_{name}": value for name, value in errors(load(best)).items()}
+    write_json(output, metrics)
+    log.info(
+        "%s, validation nmse %s, long responses %s %%",
+        metrics["status"],
+        metrics["validation_nmse"],
+        metrics.get("long_response_error_percent_worst"),
+    )
+
+
+def _setting(job: Job) -> dict[str, Any]:
+    """What metrics say of the structure, if the study has one."""
+    if "structure" not in job:
+        return {"structure": None, "normalisation": None}
+    normalisation = part_of(Study, job["part"]).reduction.normalisation
+    return {"structure": job["structure"]["name"], "normalisation": normalisation}
+
+
+def _beside_reference(job: Job) -> Errors:
+    """Errors of long responses, from the reference model's."""
+    return _beside_reference_of(json.dumps(job, sort_keys=True))
+
+
+@cache
+def _beside_reference_of(values: str) -> Errors:
+    """The same of a job as JSON: the trials of a batch have the same references."""
+    job = json.loads(values)
+    study, variant = part_of(Study, job["part"]), job["variant"]
+    basis = reduce(Structure.model_validate(job["structure"]), study.reduction)
+    references = long_responses(study, basis, variant)
+    return lambda surrogate: long_response_errors(study, basis, variant, surrogate, references)
+
+
+def _beside_recordings(job: Job, manifest: Path) -> Errors:
+    """Errors of rollouts, from held-out trajectories of the user's files."""
+    settings = part_of(FilesStudy, job["part"]).rollouts
+    held_out = HeldOutTrajectories.of(read_manifest(manifest), settings.trajectories)
+    return lambda surrogate: rollout_errors(surrogate, held_out, settings.integrator)
+
+
+@for_rules(
+    fit="what training says of the run",
+    weights="the surrogate that it keeps",
+    best="the one that validated best",
+    manifest="none",
+    output="its metrics",
+)
+def score_map(job: Job, fit: Path, weights: Path, best: Path, manifest: list[Path], output: Path) -> None:
+    """Score one run of a map: what training says of it on held-out samples is all.
+
+    There is no `manifest` of a map; rule `accuracy` reads its weights.
+    """
+    write_json(output, read_run(fit))
+
+
+DEFAULT_SWEEP = "default"
+
+SAYS_WHY = "table sweeps.csv says why"
+
+
+@for_rules(runs="the folder of all runs", output="the selection")
+def select(job: Job, runs: Path, output: Path) -> None:
+    """Choose the surrogates of a study that are evaluated.
+
+    It follows from the metrics of the runs below `runs`. The best surrogate of the sweep `default` goes by
+    the name of its architecture (`hnn`), that of another sweep has the sweep's name added (`hnn_paper`). Of a
+    study of maps there is the best for each of the trials' labels.
+    """
+    selection: dict[str, dict[str, Any]] = {}
+    for sweep, keys in job["sweeps"].items():
+        records = [read_run(runs / key / "metrics.json") for key in keys]
+        if job.get("maps"):
+            best = select_maps(records)
+            selection |= {name if sweep == DEFAULT_SWEEP else f"{name}_{sweep}": best[name] for name in best}
+            continue
+        for variant, chosen in select_fields(records).items():
+            for name, entry in chosen.items():
+                known_as = name if sweep == DEFAULT_SWEEP else f"{name}_{sweep}"
+                selection.setdefault(variant, {})[known_as] = entry
+    if job.get("maps") and selection and "network" not in selection:
+        log.warning("no network of %s has finished; its %s", job["study"], SAYS_WHY)
+    if not selection:
+        log.warning("no trial of %s has finished; its %s", job["study"], SAYS_WHY)
+    write_json(output, selection)
