@@ -18,8 +18,7 @@ import numpy as np
 import pandas as pd
 
 from flexsurr.config.files import Columns, Filter, Rollouts
-from flexsurr.config.merging import Source, build
-from flexsurr.config.reading import read_yaml
+from flexsurr.config.reading import Source, build, read_yaml
 from flexsurr.config.sweep import FieldSweep
 from flexsurr.config.trial import Trial
 from flexsurr.evaluation.published_tasks import TASKS, Task, energy_mse, grid, rate_mse, recordings

@@ -22,7 +22,7 @@ import psutil
 from timing import COLUMNS, ROWS
 
 from flexsurr.cli.training import commit
-from flexsurr.storage.atomic import replacing
+from flexsurr.storage.files import replacing
 
 HERE = Path(__file__).parent
 BENCHMARKS = (

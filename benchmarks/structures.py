@@ -14,8 +14,8 @@ from flexsurr.beam import find_equilibrium, natural_modes, reduce, reduced_order
 from flexsurr.config.along_span import AlongSpan
 from flexsurr.config.load import TipForce
 from flexsurr.config.structure import Structure
-from flexsurr.config.structure_file import read_structure
 from flexsurr.config.study import Reduction
+from flexsurr.config.study_files import read_structure
 
 STRUCTURES = Path(__file__).parents[1] / "config/structures"
 COUNTS = (8, 16, 32)

@@ -14,8 +14,8 @@ from time import perf_counter
 import numpy as np
 
 from flexsurr.beam import natural_modes, reduce, reduced_order
-from flexsurr.config.structure_file import read_structure
 from flexsurr.config.study import Integrator, Reduction
+from flexsurr.config.study_files import read_structure
 from flexsurr.evaluation.choice import Choice
 from flexsurr.simulation import simulate
 

@@ -96,7 +96,7 @@ class Response:
 
     def plot(self, path: str | Path | None = None) -> "Figure":
         """Tip, or states where there is no tip, over time; written to `path` (.png, .svg, .pdf) if given."""
-        from flexsurr.report.response_plot import response_plot  # here, for matplotlib takes a second
+        from flexsurr.report.response_figures import response_plot  # here, for matplotlib takes a second
 
         figure = response_plot(self.table(), self.name)
         if path is not None:

@@ -1,13 +1,10 @@
 """The airliner's aerodynamics: a vortex lattice rebuilt, frozen, or reduced to its quadratic form."""
 
 from flexsurr.aerodynamics.airframe import Airframe, ModalMotion, airframe_of
-from flexsurr.aerodynamics.airliner_lattice import airliner_lattice
 from flexsurr.aerodynamics.features import COEFFICIENTS, FEATURES, Reference
-from flexsurr.aerodynamics.frozen import frozen
-from flexsurr.aerodynamics.lattice import Lattice, panel
-from flexsurr.aerodynamics.mach_grid import MachGrid, fixed_machs, mach_grid
+from flexsurr.aerodynamics.lattice import Lattice, airliner_lattice, panel
 from flexsurr.aerodynamics.quadratic import quadratic
-from flexsurr.aerodynamics.vortex_lattice import rebuilt
+from flexsurr.aerodynamics.vortex_lattice import MachGrid, fixed_machs, frozen, mach_grid, rebuilt
 
 __all__ = [
     "COEFFICIENTS",

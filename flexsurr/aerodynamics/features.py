@@ -2,7 +2,7 @@
 
 Geometry (lattice, modes, centre of gravity) is in geometry axes: x aft from the nose, y right, z up.
 Inputs, side force and moments are in body axes: x forward, y right, z down, origin at the centre of gravity;
-lift and drag in stability axes, body axes turned by α about y (`flexsurr.aerodynamics.stability_axes`).
+lift and drag in stability axes, body axes turned by α about y (`flexsurr.aerodynamics.forces`).
 Names in brackets are the paper's (its section 5).
 
 Inputs

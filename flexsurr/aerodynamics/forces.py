@@ -1,14 +1,75 @@
-"""From circulations to sums in body axes: Kutta–Joukowski's forces, the body's, parasite drag.
+"""From circulations to the twelve coefficients: forces in body axes, parasite drag, stability axes.
 
-`flexsurr.aerodynamics.stability_axes` makes the twelve coefficients of them.
+Kutta–Joukowski's forces, the body's and the parasite drag are summed in body axes, in the order X, Y, Z, l,
+m, n. What comes out, and what equations of motion take, is lift, drag, side force, then pitching, rolling and
+yawing moment. Lift and drag are in stability axes, body axes turned by α about the y axis:
+
+    C_L =  C_X sin α − C_Z cos α        C_X = C_L sin α − C_D cos α
+    C_D = −C_X cos α − C_Z sin α        C_Z = −C_L cos α − C_D sin α
+
+The two are the same reflection, so one function serves both ways. Side force and moments stay in body axes.
+
+Parasite drag depends on the Reynolds number, which makes altitude a live input. The given coefficient holds
+at the design point; elsewhere it follows the skin friction of a turbulent flat plate, 0.455 / (log₁₀ Re)^2.58
+/ (1 + 0.144 M²)^0.65 (Raymer, *Aircraft Design*, eq. 12.27).
 """
+
+import math
 
 from numba import njit
 
 from flexsurr.aerodynamics.boundary import COMPILED, local_onset, onset
-from flexsurr.aerodynamics.features import ALTITUDE, FIRST_MODAL, MACH, MODES
-from flexsurr.aerodynamics.parasite_drag import parasite_drag
-from flexsurr.aerodynamics.stability_axes import BODY_L, BODY_M, BODY_N, BODY_X, BODY_Y, BODY_Z
+from flexsurr.aerodynamics.features import (
+    ALPHA,
+    ALTITUDE,
+    DRAG,
+    FIRST_MODAL,
+    LIFT,
+    MACH,
+    MODES,
+    PITCH,
+    ROLL,
+    SIDE,
+    YAW,
+)
+from flexsurr.aerodynamics.standard_atmosphere import CACHED, density, speed_of_sound, viscosity
+
+# Places of sums in body axes.
+BODY_X, BODY_Y, BODY_Z, BODY_L, BODY_M, BODY_N = range(6)
+
+
+@njit(**COMPILED)
+def reflected(sine, cosine, first, second):
+    """(C_X, C_Z) of (C_L, C_D), or (C_L, C_D) of (C_X, C_Z), by the sine and cosine of α."""
+    return sine * first - cosine * second, -cosine * first - sine * second
+
+
+@njit(**COMPILED)
+def name_coefficients(u, y):
+    """Replace the sums in body axes in `y` (12,) by the coefficients at the features `u` (25,)."""
+    lift, drag = reflected(math.sin(u[ALPHA]), math.cos(u[ALPHA]), y[BODY_X], y[BODY_Z])
+    side, roll, pitch, yaw = y[BODY_Y], y[BODY_L], y[BODY_M], y[BODY_N]
+    y[LIFT], y[DRAG], y[SIDE] = lift, drag, side
+    y[PITCH], y[ROLL], y[YAW] = pitch, roll, yaw
+
+
+# Where a transport's drag is quoted: in cruise.
+DESIGN_MACH = 0.7
+DESIGN_ALTITUDE = 10000.0  # m
+
+
+@njit(**CACHED)
+def friction(mach, altitude, length):
+    """Skin friction coefficient of a plate of `length` [m] at `altitude` [m]."""
+    reynolds = density(altitude) * mach * speed_of_sound(altitude) * length / viscosity(altitude)
+    return 0.455 / (math.log10(reynolds) ** 2.58 * (1.0 + 0.144 * mach * mach) ** 0.65)
+
+
+@njit(**CACHED)
+def parasite_drag(at_design_point, mach, altitude, chord):
+    """C_D0 at `mach` and `altitude` [m], from that at the design point and the reference chord [m]."""
+    ratio = friction(mach, altitude, chord) / friction(DESIGN_MACH, DESIGN_ALTITUDE, chord)
+    return at_design_point * ratio
 
 
 @njit(**COMPILED)

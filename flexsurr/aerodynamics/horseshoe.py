@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 
 from flexsurr.aerodynamics.lattice import Lattice
-from flexsurr.config.feature_limits import LARGEST_MACH
+from flexsurr.config.aerodynamics import LARGEST_MACH
 from flexsurr.simulation.rhs import FLOATING_POINT, Array
 
 INLINED = {"fastmath": FLOATING_POINT, "error_model": "numpy", "_nrt": False}

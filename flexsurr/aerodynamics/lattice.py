@@ -1,9 +1,9 @@
-"""Horseshoe lattices: several lifting surfaces, each a row of trapezoids, cut into panels.
+"""Horseshoe lattices: several lifting surfaces, each a row of trapezoids, cut into panels; the airliner's.
 
 The lattice lies in planes parallel to x: dihedral shapes it, while incidence and twist turn the normals
 alone, as control surfaces and elastic motion do later. The bound vortex runs along a quarter of each
 panel's chord, left to right (upwards on a vertical surface), the control point lies at three quarters
-of its middle chord.
+of its middle chord. The planform of a surface serves the beam within it too.
 """
 
 from collections.abc import Sequence
@@ -14,9 +14,43 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexsurr.aerodynamics.features import CONTROLS
-from flexsurr.aerodynamics.planform import Planform
-from flexsurr.config.aircraft import ControlSurface, Surface
+from flexsurr.config.aerodynamics import PanelCounts
+from flexsurr.config.aircraft import Aircraft, ControlSurface, Surface
 from flexsurr.simulation.rhs import Array
+
+
+class Planform:
+    """The right (or only) half of a surface; lengths along it are measured from its root.
+
+    `ends` (k + 1,) are the lengths [m] at which its k sections meet, root and tip included, `corners`
+    (k + 1, 3) [m] its leading edge there, and `spans` (k + 1,) [m] its span coordinates: y, or height above
+    the root where the surface is `vertical`.
+    """
+
+    def __init__(self, surface: Surface, vertical: bool = False) -> None:
+        self.vertical = vertical
+        sections = surface.sections
+        lengths = np.array([section.length_m for section in sections])
+        self.ends = np.concatenate([[0.0], np.cumsum(lengths)])
+        dihedral = np.radians([section.dihedral_deg for section in sections]) + (
+            0.5 * np.pi if vertical else 0.0
+        )
+        sweep = np.radians([section.sweep_deg for section in sections])
+        # sweep is that of the leading edge against its own projection on the y-z plane
+        steps = np.stack([np.tan(sweep), np.cos(dihedral), np.sin(dihedral)], axis=1) * lengths[:, None]
+        self.corners = np.array(surface.root_m) + np.concatenate([np.zeros((1, 3)), np.cumsum(steps, axis=0)])
+        self.spans = self.corners[:, 2] - self.corners[0, 2] if vertical else self.corners[:, 1]
+        self._chords = np.array([sections[0].chord_m[0], *(section.chord_m[1] for section in sections)])
+
+    def leading_edge(self, length: Array) -> Array:
+        """Points (m, 3) [m] of the leading edge at lengths (m,)."""
+        return np.stack([np.interp(length, self.ends, column) for column in self.corners.T], axis=-1)
+
+    def chord(self, length: Array) -> Array:
+        """Chord [m] at lengths (m,)."""
+        chord: Array = np.interp(length, self.ends, self._chords)
+        return chord
+
 
 MIRROR = np.array([1.0, -1.0, 1.0])
 _ROUNDING = 1e-9
@@ -184,3 +218,54 @@ def _chordwise_edges(count: int, hinge: float) -> Array:
     behind = min(max(round(count * (1.0 - hinge)), 1), count - 1)
     ahead = np.linspace(0.0, hinge, count - behind, endpoint=False)
     return np.concatenate([ahead, np.linspace(hinge, 1.0, behind + 1)])
+
+
+INCIDENCE, ELEVATOR_LEFT, ELEVATOR_RIGHT, AILERON_LEFT, AILERON_RIGHT, RUDDER = range(CONTROLS)
+
+
+def airliner_lattice(aircraft: Aircraft, counts: PanelCounts | None = None) -> Lattice:
+    """The lattice of `aircraft`: right and left wing, right and left horizontal tail, vertical tail.
+
+    Raises ValueError where a surface has fewer strips than sections and control surfaces ask for.
+    """
+    counts = counts or PanelCounts()
+    surfaces, controls = aircraft.surfaces, aircraft.control_surfaces
+    flaps: dict[str, tuple[ControlSurface, int, int]] = {}
+    for flap, left, right in (
+        (controls.elevator, ELEVATOR_LEFT, ELEVATOR_RIGHT),
+        (controls.aileron, AILERON_LEFT, AILERON_RIGHT),
+        (controls.rudder, RUDDER, RUDDER),
+    ):
+        flaps[flap.surface] = (flap, left, right)
+    parts = [
+        *_both_halves(surfaces.wing, "wing", counts.wing, flaps.get("wing")),
+        *_both_halves(
+            surfaces.horizontal_tail, "horizontal_tail", counts.horizontal_tail, flaps.get("horizontal_tail")
+        ),
+    ]
+    name = "vertical_tail"
+    rudder = flaps[name][0] if name in flaps else None
+    tail, axes = panel(surfaces.vertical_tail, name, *counts.vertical_tail, vertical=True, flap=rudder)
+    if rudder is not None:
+        tail.hinge[:, RUDDER] = -axes  # about the upward hinge a positive turn moves the trailing edge right
+    lattice = Lattice.joined([*parts, tail])
+    turned = lattice.surface == lattice.surfaces.index(controls.trimmed_surface)
+    lattice.hinge[turned, INCIDENCE] = (0.0, 1.0, 0.0)
+    return lattice
+
+
+def _both_halves(
+    surface: Surface, name: str, counts: tuple[int, int], flap: tuple[ControlSurface, int, int] | None
+) -> tuple[Lattice, Lattice]:
+    right, axes = panel(surface, name, *counts, flap=flap[0] if flap else None)
+    left = right.mirrored()
+    if flap is not None:
+        _, on_the_left, on_the_right = flap
+        right.hinge[:, on_the_right] = axes
+        left.hinge[:, on_the_left] = _mirrored_axis(axes)
+    return right, left
+
+
+def _mirrored_axis(axes: Array) -> Array:
+    """An axis of rotation is an axial vector: what it turns downwards its image turns downwards too."""
+    return np.where(axes == 0.0, 0.0, -axes * MIRROR)

@@ -21,10 +21,8 @@ from flexsurr.aerodynamics.features import (
     MACH,
     RATE_P,
 )
-from flexsurr.aerodynamics.forces import add_body
-from flexsurr.aerodynamics.frozen import frozen_matrices
-from flexsurr.aerodynamics.mach_grid import MachGrid, write_weights
-from flexsurr.aerodynamics.stability_axes import name_coefficients
+from flexsurr.aerodynamics.forces import add_body, name_coefficients
+from flexsurr.aerodynamics.vortex_lattice import MachGrid, frozen_matrices, write_weights
 from flexsurr.simulation.mapping import CompiledMapping, implements_mapping
 from flexsurr.simulation.rhs import Array
 

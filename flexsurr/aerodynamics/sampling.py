@@ -1,11 +1,15 @@
-"""Random features to sample the aerodynamics at, independent of how they are cut into shards."""
+"""Random features to sample the aerodynamics at, independent of how they are cut into shards.
+
+And an aerodynamics to first order in the modal coordinates and velocities, to be sampled in its place.
+"""
 
 from typing import Literal
 
 import numpy as np
 
-from flexsurr.aerodynamics.features import FEATURES
-from flexsurr.config.feature_limits import FeatureLimits
+from flexsurr.aerodynamics.features import FEATURES, FIRST_ETA
+from flexsurr.config.aerodynamics import FeatureLimits
+from flexsurr.simulation.mapping import CompiledMapping
 from flexsurr.simulation.rhs import Array
 
 
@@ -47,3 +51,19 @@ def draw_features(
         unit = np.stack([generator.uniform(size=len(FEATURES)) for generator in generators])
     samples: Array = low + (high - low) * unit
     return samples
+
+
+_MODAL_STEP = 1e-3
+
+
+def linear_in_modes(form: CompiledMapping, u: Array) -> Array:
+    """Coefficients (m, 12) at features `u` (m, 25), linearised about the undeformed airframe at rest.
+
+    c(r, 0) + ∂c/∂m m, with m the modal coordinates and velocities and r the other features. The derivative
+    along m is a central difference, whose error is 1e-6 of the third order in m.
+    """
+    rigid, ahead, behind = (np.array(u) for _ in range(3))
+    rigid[:, FIRST_ETA:] = 0.0
+    ahead[:, FIRST_ETA:] *= _MODAL_STEP
+    behind[:, FIRST_ETA:] *= -_MODAL_STEP
+    return np.asarray(form(rigid) + (form(ahead) - form(behind)) / (2.0 * _MODAL_STEP))

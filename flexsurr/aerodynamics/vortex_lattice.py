@@ -1,17 +1,26 @@
-"""The vortex lattice rebuilt at every call: what the study's reference simulation pays for."""
+"""The vortex lattice, rebuilt at every call, or with its matrices frozen on a grid of Mach numbers.
+
+The rebuilt one is what the study's reference simulation pays for. The frozen one inverts its matrices once on
+the grid, then multiplies; coefficients (not matrices) are interpolated between Mach numbers, so at a node
+they are the rebuilt lattice's. By Prandtl–Glauert's rule everything depends on the Mach number through β =
+√(1 − M²) alone, and smoothly; so nodes are equally spaced in β, and Lagrange's polynomials in β pass through
+the nearest of them.
+"""
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 
 from flexsurr.aerodynamics.airframe import Airframe, Panels, panels_of
-from flexsurr.aerodynamics.boundary import BoundaryCondition, normal_wash
+from flexsurr.aerodynamics.boundary import COMPILED, BoundaryCondition, normal_wash
 from flexsurr.aerodynamics.features import COEFFICIENTS, FEATURES, MACH
-from flexsurr.aerodynamics.forces import add_body, add_vortex_force
-from flexsurr.aerodynamics.horseshoe import induced
-from flexsurr.aerodynamics.stability_axes import name_coefficients
+from flexsurr.aerodynamics.forces import add_body, add_vortex_force, name_coefficients
+from flexsurr.aerodynamics.horseshoe import induced, influence, stretch_of
 from flexsurr.simulation.mapping import CompiledMapping, implements_mapping
+from flexsurr.simulation.rhs import Array
 
 
 class Rebuilt(NamedTuple):
@@ -61,5 +70,138 @@ def _rebuilt(kernel, u, y, work):
             vy += gamma[j] * uy
             vz += gamma[j] * uz
         add_vortex_force(exact, panels, u, i, gamma[i], vx, vy, vz, y)
+    add_body(exact, panels, u, y)
+    name_coefficients(u, y)
+
+
+DEFAULT_NODES = 9
+DEFAULT_POINTS = 3
+
+
+class MachGrid(NamedTuple):
+    """Nodes √(1 − M²) (K,), decreasing; each interpolation uses the `points` nearest of them."""
+
+    nodes: Array
+    points: int
+
+    def machs(self) -> Array:
+        """The Mach numbers (K,) of the nodes."""
+        return np.sqrt(1.0 - self.nodes * self.nodes)
+
+
+def mach_grid(low: float, high: float, nodes: int = DEFAULT_NODES, points: int = DEFAULT_POINTS) -> MachGrid:
+    """Nodes from Mach `low` to `high`, both among them. Raises ValueError where that cannot be."""
+    if not low < high or nodes < 2:
+        raise ValueError(
+            f"Mach numbers from {low:g} to {high:g} at {nodes} nodes: low < high and two nodes needed"
+        )
+    first, last = 1.0 / stretch_of(low), 1.0 / stretch_of(high)
+    return _grid(np.linspace(first, last, nodes), points)
+
+
+def fixed_machs(machs: Sequence[float], points: int = DEFAULT_POINTS) -> MachGrid:
+    """These Mach numbers, increasing; of a single one the value is held everywhere."""
+    nodes = np.array([1.0 / stretch_of(mach) for mach in machs])
+    if nodes.size == 0 or np.any(np.diff(nodes) >= 0.0):
+        raise ValueError(f"Mach numbers {list(machs)}: one or more are needed, increasing")
+    return _grid(nodes, points)
+
+
+def _grid(nodes: Array, points: int) -> MachGrid:
+    if points < 1:
+        raise ValueError(f"interpolation through {points} points; at least one is needed")
+    return MachGrid(nodes, min(points, len(nodes)))
+
+
+@njit(**COMPILED)
+def write_weights(grid, mach, weights):
+    """Write the weight of each of the K nodes at `mach` into the first K of `weights`, most of them 0."""
+    nodes, points = grid
+    count = nodes.size
+    beta = math.sqrt(1.0 - mach * mach)
+    passed = 0
+    for k in range(count):
+        weights[k] = 0.0
+        if nodes[k] >= beta:
+            passed = k + 1
+    first = passed - points // 2
+    first = max(min(first, count - points), 0)
+    for k in range(first, first + points):
+        weight = 1.0
+        for j in range(first, first + points):
+            if j != k:
+                weight *= (beta - nodes[j]) / (nodes[k] - nodes[j])
+        weights[k] = weight
+
+
+class FrozenMatrices(NamedTuple):
+    """`inverse` (K, N, N): circulations for unit wash; `induced` (K, 3, N, N): velocities they induce."""
+
+    inverse: Array
+    induced: Array
+
+
+class Frozen(NamedTuple):
+    """Matrices at the K nodes of a grid of Mach numbers."""
+
+    panels: Panels
+    exact: bool
+    grid: MachGrid
+    matrices: FrozenMatrices
+
+
+def frozen_matrices(panels: Panels, grid: MachGrid) -> FrozenMatrices:
+    """The matrices of `panels` at the nodes of `grid`."""
+    inverses, velocities = [], []
+    for node in grid.nodes:
+        at_control = influence(panels.ends, 1.0 / node, panels.control)
+        inverses.append(np.linalg.inv(np.einsum("dij,id->ij", at_control, panels.normal)))
+        velocities.append(influence(panels.ends, 1.0 / node, panels.bound))
+    return FrozenMatrices(np.ascontiguousarray(np.stack(inverses)), np.stack(velocities))
+
+
+def frozen(
+    airframe: Airframe, grid: MachGrid, boundary_condition: BoundaryCondition = "exact"
+) -> CompiledMapping:
+    """The lattice of `airframe` with matrices frozen on `grid`, from 25 features to 12 coefficients."""
+    panels = panels_of(airframe)
+    kernel = Frozen(panels, boundary_condition == "exact", grid, frozen_matrices(panels, grid))
+    work_size = len(grid.nodes) + 2 * len(airframe.lattice)
+    return CompiledMapping(kernel, work_size, FEATURES, COEFFICIENTS)
+
+
+@implements_mapping(Frozen)
+def _frozen(kernel, u, y, work):
+    panels, exact, grid, matrices = kernel
+    inverse, induced = matrices
+    n = panels.normal.shape[0]
+    count = grid.nodes.size
+    # work: weights of the nodes, wash, circulations
+    # unsigned: numba lets a signed index be negative, and a loop over such does not vectorise
+    columns = np.uint64(n)
+    wash, circulations = np.uint64(count), np.uint64(count + n)
+    write_weights(grid, u[MACH], work)
+    for k in range(y.size):
+        y[k] = 0.0
+    for i in range(n):
+        work[count + i] = -normal_wash(exact, panels, u, i)
+    for node in range(count):
+        weight = work[node]
+        if weight == 0.0:
+            continue
+        for i in range(n):
+            total = 0.0
+            for j in range(columns):
+                total += inverse[node, i, j] * work[wash + j]
+            work[count + n + i] = total
+        for i in range(n):
+            vx, vy, vz = 0.0, 0.0, 0.0
+            for j in range(columns):
+                gamma = work[circulations + j]
+                vx += induced[node, 0, i, j] * gamma
+                vy += induced[node, 1, i, j] * gamma
+                vz += induced[node, 2, i, j] * gamma
+            gamma = weight * work[count + n + i]
+            add_vortex_force(exact, panels, u, i, gamma, vx, vy, vz, y)
     add_body(exact, panels, u, y)
     name_coefficients(u, y)

@@ -10,7 +10,7 @@ import pandas as pd
 from flexsurr.beam import EquilibriumNotFound, ModalBasis, reduce
 from flexsurr.cli.command import Job, for_rules
 from flexsurr.cli.runs import SELECTED, most_accurate, selected_runs, selected_surrogates
-from flexsurr.config.part import part_of
+from flexsurr.config.schema import part_of
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Study
 from flexsurr.evaluation.cases import Response, evaluation_cases
@@ -19,10 +19,8 @@ from flexsurr.evaluation.cost import cost_table
 from flexsurr.evaluation.energy import energy_table
 from flexsurr.evaluation.learned_loads import learn_forces, learned_load_table
 from flexsurr.evaluation.published import is_of_the_recipe
-from flexsurr.evaluation.responses import response_table
-from flexsurr.evaluation.shapes import shapes_table
-from flexsurr.evaluation.statics import natural_frequencies, static_tip
-from flexsurr.evaluation.validation import validation_table
+from flexsurr.evaluation.responses import response_table, validation_table
+from flexsurr.evaluation.statics import natural_frequencies, shapes_table, static_tip
 from flexsurr.storage.frames import write_frame
 from flexsurr.surrogates import load_map, save_map
 from flexsurr.training import load_dataset

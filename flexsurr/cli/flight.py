@@ -11,10 +11,9 @@ import pandas as pd
 from flexsurr.aerodynamics.features import COEFFICIENTS, FEATURES
 from flexsurr.cli.command import Job, for_rules
 from flexsurr.cli.runs import SELECTED
+from flexsurr.config.aerodynamics import FeatureLimits, PanelCounts
 from flexsurr.config.aircraft import Aircraft
-from flexsurr.config.feature_limits import FeatureLimits
 from flexsurr.config.flight import CONTROL_NAMES, FlightCondition, FlightSettings
-from flexsurr.config.panels import PanelCounts
 from flexsurr.evaluation.airliner_cost import (
     NETWORK,
     OfEachFlight,

@@ -5,7 +5,7 @@ from pathlib import Path
 from flexsurr.cli.command import Job, for_rules
 from flexsurr.cli.runs import SELECTED, selected_surrogates
 from flexsurr.config.files import FILES, FilesStudy, Rollouts
-from flexsurr.config.part import part_of
+from flexsurr.config.schema import part_of
 from flexsurr.evaluation import rollouts as of_rollouts
 from flexsurr.storage import read_manifest
 from flexsurr.storage.frames import write_frame

@@ -4,15 +4,13 @@ import logging
 from pathlib import Path
 
 from flexsurr.aerodynamics.features import COEFFICIENT_UNITS, COEFFICIENTS, FEATURE_UNITS, FEATURES
-from flexsurr.aerodynamics.modal_linearisation import linear_in_modes
-from flexsurr.aerodynamics.sampling import draw_features, feature_intervals
+from flexsurr.aerodynamics.sampling import draw_features, feature_intervals, linear_in_modes
 from flexsurr.aerodynamics.vortex_lattice import rebuilt
 from flexsurr.cli.batch import make_all, shards_of
 from flexsurr.cli.command import Job, for_rules
+from flexsurr.config.aerodynamics import FeatureLimits, PanelCounts
 from flexsurr.config.aircraft import Aircraft
-from flexsurr.config.feature_limits import FeatureLimits
-from flexsurr.config.panels import PanelCounts
-from flexsurr.config.part import part_of
+from flexsurr.config.schema import part_of
 from flexsurr.config.trial import sample_name
 from flexsurr.flight.airliner import flexible_airframe
 from flexsurr.flight.modes import free_modes

@@ -11,12 +11,11 @@ from flexsurr.beam import EquilibriumNotFound, reduce
 from flexsurr.cli.command import Job, for_rules
 from flexsurr.cli.runs import read_run
 from flexsurr.config.files import FilesStudy
-from flexsurr.config.part import part_of
+from flexsurr.config.schema import part_of
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Study
-from flexsurr.evaluation.held_out import held_out_errors
 from flexsurr.evaluation.rollouts import HeldOutTrajectories, rollout_errors
-from flexsurr.evaluation.selection import long_response_errors, long_responses
+from flexsurr.evaluation.scores import held_out_errors, long_response_errors, long_responses
 from flexsurr.storage import read_manifest, write_json
 from flexsurr.surrogates import load
 from flexsurr.training import load_dataset

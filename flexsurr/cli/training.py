@@ -13,13 +13,13 @@ import numpy as np
 
 from flexsurr.beam import EquilibriumNotFound, ModalBasis, reduce
 from flexsurr.cli.command import Job, for_rules
-from flexsurr.config.part import part_of
+from flexsurr.config.schema import part_of
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Study
 from flexsurr.config.trial import Iterative, Map, Trial, configurations_of, settings_of, trial_of
 from flexsurr.storage import read_all_samples, read_manifest, write_json
+from flexsurr.storage.files import locked
 from flexsurr.storage.frames import write_frame
-from flexsurr.storage.lock import locked
 from flexsurr.surrogates import Surrogate, save_map
 from flexsurr.tracking.store import read_store
 from flexsurr.tracking.trial import tracked

@@ -8,7 +8,7 @@ import numpy as np
 from flexsurr.beam import EquilibriumNotFound, draw_initial_conditions, reduce, reduced_order
 from flexsurr.cli.batch import make_all, shards_of
 from flexsurr.cli.command import Job, for_rules
-from flexsurr.config.part import part_of
+from flexsurr.config.schema import part_of
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Study
 from flexsurr.simulation import simulate_ensemble

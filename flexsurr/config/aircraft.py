@@ -11,9 +11,8 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from flexsurr.config.aircraft_mass import Masses
-from flexsurr.config.merging import Source as FileOfValues
-from flexsurr.config.merging import build
-from flexsurr.config.reading import read_yaml
+from flexsurr.config.reading import Source as FileOfValues
+from flexsurr.config.reading import build, read_yaml
 from flexsurr.config.schema import Record
 from flexsurr.config.stiffness import Stiffness
 from flexsurr.config.structure import NotNegative, Positive

@@ -15,8 +15,8 @@ from annotated_types import Ge, Gt, Le, Lt, MaxLen, MinLen
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
+from flexsurr.config.aerodynamics import FeatureLimits
 from flexsurr.config.aircraft import Aircraft
-from flexsurr.config.feature_limits import FeatureLimits
 from flexsurr.config.files import FilesStudy
 from flexsurr.config.sample_study import SampleStudy
 from flexsurr.config.schema import Record

@@ -4,8 +4,8 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
+from flexsurr.config.aerodynamics import PanelCounts
 from flexsurr.config.flight import FlightSettings
-from flexsurr.config.panels import PanelCounts
 from flexsurr.config.schema import Record
 from flexsurr.config.study import DEFAULT, Count
 

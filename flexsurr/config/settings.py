@@ -10,8 +10,7 @@ from typing import Annotated, Any
 from pydantic import Field, field_validator
 
 from flexsurr.config.errors import ConfigurationError
-from flexsurr.config.merging import Source, build, merge
-from flexsurr.config.reading import read_yaml
+from flexsurr.config.reading import Source, build, merge, read_yaml
 from flexsurr.config.schema import Record
 from flexsurr.config.sources import AnyStudy, resolve
 from flexsurr.config.study import Count

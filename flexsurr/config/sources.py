@@ -4,8 +4,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from flexsurr.config.aerodynamics import FeatureLimits
 from flexsurr.config.aircraft import SURFACES, Aircraft
-from flexsurr.config.feature_limits import FeatureLimits
 from flexsurr.config.files import FilesStudy
 from flexsurr.config.flight import CONTROL_NAMES
 from flexsurr.config.own_network import own_network

@@ -1,17 +1,30 @@
 """The files that say what a study is, and those that they name, read with errors that name the file."""
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import Any, NoReturn, TypeVar
 
 from pydantic import BaseModel
 
+from flexsurr.config.along_span import with_table
 from flexsurr.config.errors import ConfigurationError
-from flexsurr.config.merging import Source, build
 from flexsurr.config.own_network import OwnNetwork, check_source, read_source, sha256
-from flexsurr.config.reading import read_yaml
+from flexsurr.config.reading import Source, build, read_yaml
 from flexsurr.config.structure import Structure
-from flexsurr.config.structure_file import structure_values
+
+
+def structure_values(path: Path, shown: str) -> dict[str, Any]:
+    """What the file at `path` says, called `shown` in errors, and the CSV file that it names.
+
+    Raises ConfigurationError for a file that is missing or cannot be read.
+    """
+    return with_table(read_yaml(path, shown), path.parent, str(PurePosixPath(shown).parent))
+
+
+def read_structure(path: str | Path) -> Structure:
+    """The structure in the file at `path`. Raises ConfigurationError with a line for each mistake."""
+    return build(Structure, [Source(str(path), structure_values(Path(path), str(path)))])
+
 
 STUDIES = "config/studies"
 

@@ -7,12 +7,11 @@ import numpy as np
 import pandas as pd
 
 from flexsurr.aerodynamics.features import FEATURES, onset_angles
-from flexsurr.config.feature_limits import FeatureLimits
+from flexsurr.config.aerodynamics import FeatureLimits
 from flexsurr.config.flight import CONTROL_NAMES, Control, FlightCondition, FlightSettings
-from flexsurr.flight.manoeuvres import doublet, fly
+from flexsurr.flight.equations_of_motion import ATTITUDE, EARTH, RATES, VELOCITY
+from flexsurr.flight.manoeuvres import doublet, fly, fly_stepped
 from flexsurr.flight.model import Doublet, features
-from flexsurr.flight.states import ATTITUDE, EARTH, RATES, VELOCITY
-from flexsurr.flight.stepped import fly_stepped
 from flexsurr.flight.trim import Trim, TrimNotFound
 from flexsurr.simulation.rhs import Array
 from flexsurr.simulation.trajectory import Trajectory

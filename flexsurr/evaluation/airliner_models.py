@@ -4,14 +4,11 @@ from dataclasses import dataclass
 
 from flexsurr.aerodynamics.airframe import Airframe
 from flexsurr.aerodynamics.boundary import BoundaryCondition
-from flexsurr.aerodynamics.frozen import frozen
-from flexsurr.aerodynamics.mach_grid import fixed_machs, mach_grid
 from flexsurr.aerodynamics.quadratic import quadratic
-from flexsurr.aerodynamics.vortex_lattice import rebuilt
+from flexsurr.aerodynamics.vortex_lattice import fixed_machs, frozen, mach_grid, rebuilt
+from flexsurr.config.aerodynamics import FeatureLimits, PanelCounts
 from flexsurr.config.aircraft import Aircraft
-from flexsurr.config.feature_limits import FeatureLimits
 from flexsurr.config.flight import FlightSettings
-from flexsurr.config.panels import PanelCounts
 from flexsurr.flight import FreeModes, free_modes, stick_model
 from flexsurr.flight.airliner import flexible_airframe
 from flexsurr.flight.model import FlightModel

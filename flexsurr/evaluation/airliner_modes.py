@@ -5,13 +5,13 @@ from dataclasses import replace
 import pandas as pd
 
 from flexsurr.aerodynamics.features import MODES as AERODYNAMIC_MODES
-from flexsurr.aerodynamics.mach_grid import fixed_machs
 from flexsurr.aerodynamics.quadratic import quadratic
+from flexsurr.aerodynamics.vortex_lattice import fixed_machs
 from flexsurr.evaluation.airliner_models import Airliner
 from flexsurr.flight.airliner import modal_motion
 from flexsurr.flight.linearise import linearise
-from flexsurr.flight.mode_names import mode_names, motions
 from flexsurr.flight.model import FlightModel
+from flexsurr.flight.modes import mode_names, motions
 from flexsurr.flight.trim import Trim, trim
 
 # The paper's numbers of the six modes that the aerodynamics knows (text to its Fig. 21): three symmetric

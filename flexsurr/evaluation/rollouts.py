@@ -127,7 +127,7 @@ def rollout_table(
 def rollout_errors(
     surrogate: Any, held_out: HeldOutTrajectories, integrator: Integrator
 ) -> dict[str, float | int | None]:
-    """What a run is chosen by: keys as `selection.long_response_errors` has them.
+    """What a run is chosen by: keys as `scores.long_response_errors` has them.
 
     own_energy_drift_percent, the largest, stands in place of energy_drift_percent. A figure that has no
     finite value is None; a rollout that diverged counts as the worst.

@@ -32,8 +32,15 @@ from flexsurr.export.expressions import Value, argument, concat, constant, each,
 from flexsurr.export.learned_maps import outputs_of_map
 from flexsurr.export.model import ExportedModel, Quantity, recommended_step
 from flexsurr.export.scaled_fields import NotExported
+from flexsurr.flight.equations_of_motion import (
+    ALTITUDE_M,
+    ATTITUDE,
+    PHI,
+    RATES_IN_X,
+    RIGID_STATES,
+    VELOCITY_IN_X,
+)
 from flexsurr.flight.model import FlightModel, airless
-from flexsurr.flight.states import ALTITUDE_M, ATTITUDE, PHI, RATES_IN_X, RIGID_STATES, VELOCITY_IN_X
 from flexsurr.simulation.rhs import Array
 from flexsurr.surrogates import LearnedMap
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
+from flexsurr.flight.equations_of_motion import RIGID_BODY
 from flexsurr.flight.model import FlightModel
-from flexsurr.flight.states import RIGID_BODY
 from flexsurr.flight.trim import Trim
 from flexsurr.simulation.rhs import Array, evaluate
 

@@ -8,16 +8,18 @@ from numpy.typing import ArrayLike
 from flexsurr.aerodynamics.features import CONTROLS, FEATURES, MODES
 from flexsurr.aerodynamics.standard_atmosphere import GRAVITY
 from flexsurr.flight.airliner import DEFAULT_MODES
-from flexsurr.flight.equations_of_motion import SCRATCH, FlexibleAircraft, features_along
-from flexsurr.flight.modes import FreeModes
-from flexsurr.flight.states import (
+from flexsurr.flight.equations_of_motion import (
     ALTITUDE_M,
     RATES_IN_X,
     RIGID_STATES,
+    SCRATCH,
     VELOCITY_IN_X,
+    FlexibleAircraft,
+    features_along,
     state_names,
     state_units,
 )
+from flexsurr.flight.modes import FreeModes
 from flexsurr.simulation.mapping import CompiledMapping
 from flexsurr.simulation.rhs import Array, evaluate
 
@@ -40,8 +42,8 @@ class Doublet:
 class FlightModel:
     """A flexible aircraft with constant thrust [N] and controls (6,) [rad], and a doublet on top.
 
-    Its states are those of `flexsurr.flight.states`. `chosen` are the numbers (from 1) of the modes that the
-    aerodynamics knows.
+    Its states are those of `flexsurr.flight.equations_of_motion`. `chosen` are the numbers (from 1) of the
+    modes that the aerodynamics knows.
     """
 
     modes: FreeModes

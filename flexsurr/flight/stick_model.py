@@ -13,10 +13,8 @@ import numpy as np
 
 from flexsurr.config.aircraft import Aircraft
 from flexsurr.config.stiffness import BeamStiffness
-from flexsurr.flight.beam_element import BeamElement, Section
-from flexsurr.flight.mass_distribution import engine_mass, fuselage_masses, surface_masses
-from flexsurr.flight.skeleton import LumpedMass, Skeleton
-from flexsurr.flight.surface_line import SurfaceLine
+from flexsurr.flight.mass_distribution import SurfaceLine, engine_mass, fuselage_masses, surface_masses
+from flexsurr.flight.skeleton import BeamElement, LumpedMass, Section, Skeleton
 from flexsurr.simulation.rhs import Array
 
 _UP = (0.0, 0.0, 1.0)

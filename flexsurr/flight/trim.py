@@ -8,9 +8,17 @@ import numpy as np
 from flexsurr.aerodynamics.features import onset_angles
 from flexsurr.aerodynamics.standard_atmosphere import speed_of_sound
 from flexsurr.config.flight import FlightCondition, TrimLimits
-from flexsurr.flight.equations_of_motion import FlexibleAircraft
+from flexsurr.flight.equations_of_motion import (
+    ALTITUDE_M,
+    PHI,
+    RIGID_STATES,
+    THETA,
+    VELOCITY_IN_X,
+    FlexibleAircraft,
+    U,
+    W,
+)
 from flexsurr.flight.model import FlightModel
-from flexsurr.flight.states import ALTITUDE_M, PHI, RIGID_STATES, THETA, VELOCITY_IN_X, U, W
 from flexsurr.simulation.rhs import Array, evaluate
 
 _ITERATIONS = 30

@@ -6,7 +6,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from flexsurr.report.integrators import integrator_method
 from flexsurr.report.labels import freeze_layout, place_labels
 from flexsurr.report.style import (
     NAMES,
@@ -15,6 +14,7 @@ from flexsurr.report.style import (
     colour,
     family,
     fitting_legend,
+    integrator_method,
     label,
     letter,
     logarithmic,

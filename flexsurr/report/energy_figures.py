@@ -15,12 +15,13 @@ from flexsurr.report.curves import (
     the_papers,
     variants_in,
 )
-from flexsurr.report.integrators import integrator_colour, integrator_name
 from flexsurr.report.style import (
     PAGE_IN,
     VARIANTS,
     colour,
     dashes,
+    integrator_colour,
+    integrator_name,
     label,
     letter,
     logarithmic,

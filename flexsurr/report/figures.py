@@ -18,12 +18,15 @@ from flexsurr.report.architecture_figures import architecture_errors
 from flexsurr.report.beam_figures import figure_08, figure_09, reduced_against_full, static_deflection
 from flexsurr.report.cost_figures import cost_accuracy
 from flexsurr.report.energy_figures import energy_decay, energy_drift, figure_13
-from flexsurr.report.every_model_figures import (
+from flexsurr.report.kinematic_figures import figure_03, figure_04
+from flexsurr.report.response_figures import (
+    figure_10,
+    figure_12,
+    figure_14,
+    figure_15,
     forced_response_of_every_model,
     free_response_of_every_model,
 )
-from flexsurr.report.kinematic_figures import figure_03, figure_04
-from flexsurr.report.response_figures import figure_10, figure_12, figure_14, figure_15
 from flexsurr.report.rollout_figures import phase_plane, rollouts
 from flexsurr.report.schematics import figure_05, figure_06, figure_07, figure_11
 from flexsurr.report.shape_figures import mode_shapes, static_shapes

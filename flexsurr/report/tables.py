@@ -14,9 +14,7 @@ from flexsurr.evaluation.columns import (
     STATIC_COLUMNS,
 )
 from flexsurr.evaluation.published import published_loss
-from flexsurr.report.architectures import architectures
-from flexsurr.report.seeds import seeds
-from flexsurr.report.sweeps import sweeps
+from flexsurr.report.run_tables import architectures, seeds, sweeps
 from flexsurr.storage import replacing
 
 TRAINING_COLUMNS = (

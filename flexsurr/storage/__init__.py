@@ -1,7 +1,6 @@
 """Datasets on disk: Parquet shards and the manifest that vouches for them."""
 
-from flexsurr.storage.atomic import read_bytes, read_json, replacing, write_json
-from flexsurr.storage.errors import DamagedFile, StorageError
+from flexsurr.storage.files import DamagedFile, StorageError, read_bytes, read_json, replacing, write_json
 from flexsurr.storage.manifest import (
     Manifest,
     ShardEntry,

@@ -9,7 +9,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from flexsurr.storage import DamagedFile, read_bytes, replacing
-from flexsurr.storage.arrow import own_table
+from flexsurr.storage.parquet import own_table
 
 NAME = b"flexsurr"  # under which a Parquet file says what it was written as
 

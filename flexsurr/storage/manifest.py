@@ -13,11 +13,9 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from flexsurr.storage.atomic import read_json, write_json
-from flexsurr.storage.errors import DamagedFile, StorageError
-from flexsurr.storage.moments import Moments
+from flexsurr.storage.files import DamagedFile, StorageError, read_json, write_json
 from flexsurr.storage.parquet import FORMAT_VERSION, Shard, ShardMetadata, read_shard
-from flexsurr.storage.scales import Scales
+from flexsurr.storage.scales import Moments, Scales
 
 SplitBy = Literal["trajectory", "sample"]
 

@@ -19,9 +19,8 @@ import pyarrow.csv as csv
 from numpy.typing import NDArray
 
 from flexsurr.config.files import Columns, Filter
-from flexsurr.storage.arrow import read_table
-from flexsurr.storage.derivatives import savitzky_golay
-from flexsurr.storage.errors import StorageError
+from flexsurr.storage.files import StorageError
+from flexsurr.storage.parquet import read_table
 
 Array = NDArray[np.float64]
 Column = NDArray[Any]
@@ -209,3 +208,23 @@ def _numbers(file: str, name: str, values: Column) -> Array:
         row = int(wrong[0])
         raise StorageError(f"{file}: row {row + 1}: {name} is {numbers[row]}; allowed: a finite number")
     return numbers
+
+
+def savitzky_golay(t: Array, x: Array, window: int, order: int) -> tuple[Array, Array]:
+    """Smoothed states and their derivatives, (m, d) each, of samples `x` (m, d) at times `t` (m,) [s].
+
+    Around each sample a polynomial of `order` is fitted to `window` samples, the sample in their middle,
+    towards the ends as near to it as can be; its value and slope there are the result. Where samples are
+    evenly spaced this is `scipy.signal.savgol_filter` with its mode "interp"; here they need not be. Raises
+    ValueError for fewer samples than the window.
+    """
+    if len(t) < window:
+        raise ValueError(f"{len(t)} samples are fewer than the window of {window}")
+    first = np.clip(np.arange(len(t)) - window // 2, 0, len(t) - window)
+    nearby = first[:, None] + np.arange(window)
+    away = t[nearby] - t[:, None]
+    # in units of the window's length, so that the powers are of one size
+    length = away[:, -1] - away[:, 0]
+    powers = (away / length[:, None])[..., None] ** np.arange(order + 1)
+    coefficients = np.linalg.pinv(powers)[:, :2] @ x[nearby]
+    return coefficients[:, 0], coefficients[:, 1] / length[:, None]

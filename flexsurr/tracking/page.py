@@ -10,8 +10,7 @@ from typing import Any
 
 from mlflow import MlflowClient
 
-from flexsurr.tracking.store import Store
-from flexsurr.tracking.trouble import shown, warn
+from flexsurr.tracking.store import Store, shown, warn
 
 log = logging.getLogger(__name__)
 

@@ -9,7 +9,7 @@ from mlflow import MlflowClient
 from mlflow.entities import Metric, Run, RunTag
 
 from flexsurr.storage import DamagedFile, StorageError, read_bytes, read_json
-from flexsurr.storage.arrow import own_table
+from flexsurr.storage.parquet import own_table
 from flexsurr.tracking import description
 from flexsurr.tracking.description import RUN_KEY
 from flexsurr.tracking.page import Page

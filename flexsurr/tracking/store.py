@@ -2,6 +2,7 @@
 
 import json
 import logging
+import re
 import sqlite3
 from collections.abc import Mapping, Sequence
 from contextlib import closing
@@ -13,7 +14,6 @@ from mlflow.entities import LifecycleStage
 from mlflow.utils.mlflow_tags import MLFLOW_RUN_NAME
 
 from flexsurr.storage import write_json
-from flexsurr.tracking.trouble import warn
 
 log = logging.getLogger(__name__)
 
@@ -127,3 +127,19 @@ def _move_artefacts(path: Path, old: str, new: str) -> None:
                 moved = f"UPDATE {table} SET {column} = ? || substr({column}, ?)"
                 which = f"WHERE {column} = ? OR {column} LIKE ?"
                 connection.execute(f"{moved} {which}", (new, len(old) + 1, old, f"{old}/%"))
+
+
+LONGEST_REASON = 300
+logging.getLogger("urllib3").setLevel(logging.ERROR)  # a server that is away is our own warning
+
+
+def warn(what: str, error: Exception) -> None:
+    """Say on one line, without passwords, that results are made without `what`, and why."""
+    reason = " ".join(f"{type(error).__name__}: {error}".split())[:LONGEST_REASON]
+    without_secrets = shown(f"{what} ({reason})")
+    log.warning("tracking: %s; results are made without it", without_secrets)
+
+
+def shown(text: str) -> str:
+    """`text` without the names and passwords of addresses in it."""
+    return re.sub(r"://[^/@ ]*@", "://…@", text)

@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import psutil
 from mlflow import MlflowClient
 from mlflow.entities import Metric, Param, RunTag
 from mlflow.exceptions import MlflowException
@@ -13,7 +14,6 @@ from mlflow.utils.mlflow_tags import MLFLOW_PARENT_RUN_ID
 
 from flexsurr.tracking import description
 from flexsurr.tracking.description import RUN_KEY, Described
-from flexsurr.tracking.machine import Machine
 from flexsurr.tracking.page import Page, signals_wait
 from flexsurr.tracking.run_files import ARTEFACTS, RunFiles
 from flexsurr.tracking.store import Store
@@ -23,6 +23,28 @@ REASON = "reason"
 BATCH = 1000  # MLflow takes no more metrics at once
 ROOM = 50  # in a batch, for what is not a loss
 LONGEST_WAIT_S = 10.0  # between batches, so that a person can watch
+MEGABYTE = 1e6
+
+
+class Machine:
+    """Samples of the processor and the memory since the last one; each takes a fraction of a millisecond."""
+
+    def __init__(self) -> None:
+        self._process = psutil.Process()
+        # The first call has nothing to compare with.
+        psutil.cpu_percent()
+        self._process.cpu_percent()
+
+    def sample(self) -> dict[str, float]:
+        """Load and memory of the machine, and those of this process (100 % is one core)."""
+        memory = psutil.virtual_memory()
+        return {
+            "system/cpu_utilization_percentage": psutil.cpu_percent(),
+            "system/system_memory_usage_megabytes": memory.used / MEGABYTE,
+            "system/system_memory_usage_percentage": memory.percent,
+            "system/process_cpu_percentage": self._process.cpu_percent(),
+            "system/process_memory_megabytes": self._process.memory_info().rss / MEGABYTE,
+        }
 
 
 @dataclass

@@ -6,7 +6,7 @@ from typing import Self
 import numpy as np
 
 from flexsurr.simulation.rhs import Array
-from flexsurr.storage.moments import Moments
+from flexsurr.storage.scales import Moments
 from flexsurr.surrogates import Surrogate
 from flexsurr.training.dataset import Block, for_each_piece
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from flexsurr.config.errors import ConfigurationError
 from flexsurr.config.files import FILES
-from flexsurr.config.part import values_of
+from flexsurr.config.schema import values_of
 from flexsurr.config.sources import ResolvedFiles
 from flexsurr.config.study_files import STUDIES
 from flexsurr.config.trial import FieldNetwork, Trial, configurations_of

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from flexsurr.config.errors import ConfigurationError
-from flexsurr.config.part import values_of
+from flexsurr.config.schema import values_of
 from flexsurr.config.sources import ResolvedStudy
 from flexsurr.config.study import DEFAULT, Study
 from flexsurr.config.trial import Trial

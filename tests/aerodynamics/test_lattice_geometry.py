@@ -5,7 +5,8 @@ import pytest
 from wings import AIRLINER, CENTRE_OF_GRAVITY, FEW
 
 from flexsurr.aerodynamics.airframe import Airframe, ModalMotion, apparent_mass_difference
-from flexsurr.aerodynamics.airliner_lattice import (
+from flexsurr.aerodynamics.features import COEFFICIENT_UNITS, COEFFICIENTS, FEATURE_UNITS, FEATURES, Reference
+from flexsurr.aerodynamics.lattice import (
     AILERON_LEFT,
     AILERON_RIGHT,
     ELEVATOR_LEFT,
@@ -14,8 +15,7 @@ from flexsurr.aerodynamics.airliner_lattice import (
     PanelCounts,
     airliner_lattice,
 )
-from flexsurr.aerodynamics.features import COEFFICIENT_UNITS, COEFFICIENTS, FEATURE_UNITS, FEATURES, Reference
-from flexsurr.aerodynamics.mach_grid import fixed_machs, mach_grid
+from flexsurr.aerodynamics.vortex_lattice import fixed_machs, mach_grid
 
 LATTICE = airliner_lattice(AIRLINER)
 

@@ -19,13 +19,10 @@ from flexsurr.aerodynamics.features import (
     MODES,
     RATE_P,
 )
-from flexsurr.aerodynamics.frozen import frozen
+from flexsurr.aerodynamics.forces import name_coefficients, parasite_drag, reflected
 from flexsurr.aerodynamics.horseshoe import influence
-from flexsurr.aerodynamics.mach_grid import fixed_machs
-from flexsurr.aerodynamics.parasite_drag import parasite_drag
 from flexsurr.aerodynamics.quadratic import quadratic
-from flexsurr.aerodynamics.stability_axes import name_coefficients, reflected
-from flexsurr.aerodynamics.vortex_lattice import rebuilt
+from flexsurr.aerodynamics.vortex_lattice import fixed_machs, frozen, rebuilt
 
 AIRFRAME = flexible_airliner(symmetric_and_antisymmetric)
 FORM = rebuilt(AIRFRAME)

@@ -5,11 +5,9 @@ from pathlib import Path
 import numpy as np
 
 from flexsurr.aerodynamics.airframe import Airframe, ModalMotion, airframe_of
-from flexsurr.aerodynamics.airliner_lattice import PanelCounts, airliner_lattice
 from flexsurr.aerodynamics.features import ALPHA, ALTITUDE, DRAG, FEATURES, LIFT, MACH, PITCH, Reference
-from flexsurr.aerodynamics.frozen import frozen
-from flexsurr.aerodynamics.lattice import Lattice, panel
-from flexsurr.aerodynamics.mach_grid import fixed_machs
+from flexsurr.aerodynamics.lattice import Lattice, PanelCounts, airliner_lattice, panel
+from flexsurr.aerodynamics.vortex_lattice import fixed_machs, frozen
 from flexsurr.config.aircraft import Section, Surface, load_aircraft
 
 AIRLINER = load_aircraft(Path(__file__).parents[2] / "config" / "aircraft" / "gnba.yaml")

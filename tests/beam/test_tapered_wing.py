@@ -12,8 +12,8 @@ from flexsurr.beam.chain import chain
 from flexsurr.beam.soundness import check_structure, unit_hint
 from flexsurr.config.history import Sine
 from flexsurr.config.load import TipForce
-from flexsurr.config.structure_file import read_structure
 from flexsurr.config.study import Integrator, Reduction
+from flexsurr.config.study_files import read_structure
 from flexsurr.simulation import simulate
 
 WING = read_structure(Path(__file__).parents[2] / "config/structures/tapered_wing.yaml")

@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from pydantic import BaseModel
 
 from flexsurr.config.errors import ConfigurationError
-from flexsurr.config.merging import Source, build, merge
-from flexsurr.config.part import part_of, values_of
+from flexsurr.config.reading import Source, build, merge
+from flexsurr.config.schema import part_of, values_of
 from flexsurr.config.settings import load
 from flexsurr.config.sources import ResolvedStudy
 from flexsurr.config.study import Reduction, Study

@@ -5,7 +5,7 @@ import yaml
 
 from flexsurr.config.errors import ConfigurationError
 from flexsurr.config.structure import BEFORE, Structure
-from flexsurr.config.structure_file import read_structure
+from flexsurr.config.study_files import read_structure
 
 BEAM = {
     "name": "taper",

@@ -13,7 +13,7 @@ from flexsurr.config.study import (
     Reduction,
 )
 from flexsurr.evaluation.dissipative_structure import dissipative_asymmetry
-from flexsurr.evaluation.energy_balance import energy_balance
+from flexsurr.evaluation.energy import energy_balance
 from flexsurr.simulation import simulate
 
 WING = Structure(

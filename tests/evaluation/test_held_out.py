@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from flexsurr.evaluation.held_out import held_out_errors
+from flexsurr.evaluation.scores import held_out_errors
 from flexsurr.training.dataset import split_dataset
 
 NAMES, UNITS = ("eta_1", "p_1"), ("rad", "kg m²/s")

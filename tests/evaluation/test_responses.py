@@ -2,9 +2,13 @@
 
 import pytest
 
-from flexsurr.evaluation.responses import RESPONSE_COLUMNS, response_table
-from flexsurr.evaluation.selection import long_response_errors, long_responses
-from flexsurr.evaluation.validation import VALIDATION_COLUMNS, validation_table
+from flexsurr.evaluation.responses import (
+    RESPONSE_COLUMNS,
+    VALIDATION_COLUMNS,
+    response_table,
+    validation_table,
+)
+from flexsurr.evaluation.scores import long_response_errors, long_responses
 
 
 @pytest.mark.parametrize("response", ["free", "forced"])

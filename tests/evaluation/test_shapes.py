@@ -6,8 +6,7 @@ import pytest
 from flexsurr.beam import reduce
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Reduction, Statics
-from flexsurr.evaluation.shapes import REACH, SHAPE_COLUMNS, shapes_table
-from flexsurr.evaluation.statics import static_tip
+from flexsurr.evaluation.statics import REACH, SHAPE_COLUMNS, shapes_table, static_tip
 
 POINT = ["x_m", "y_m", "z_m"]
 

@@ -18,8 +18,8 @@ from flexsurr.export import ExportedModel, Quantity, exported_aircraft, exported
 from flexsurr.export.expressions import argument
 from flexsurr.export.from_program import outputs_of
 from flexsurr.flight import free_modes, stick_model
+from flexsurr.flight.equations_of_motion import ALTITUDE_M, VELOCITY_IN_X
 from flexsurr.flight.model import FlightModel, features
-from flexsurr.flight.states import ALTITUDE_M, VELOCITY_IN_X
 from flexsurr.surrogates import (
     ACTIVATIONS,
     HNN,

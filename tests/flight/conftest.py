@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from flexsurr.aerodynamics.mach_grid import fixed_machs
 from flexsurr.aerodynamics.quadratic import quadratic
+from flexsurr.aerodynamics.vortex_lattice import fixed_machs
+from flexsurr.config.aerodynamics import PanelCounts
 from flexsurr.config.aircraft import load_aircraft
-from flexsurr.config.panels import PanelCounts
 from flexsurr.flight import free_modes, stick_model
 from flexsurr.flight.airliner import flexible_airframe
 from flexsurr.flight.linear_aerodynamics import derivatives, linear_aerodynamics

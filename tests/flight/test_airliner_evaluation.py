@@ -7,9 +7,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from flexsurr.config.feature_limits import load_feature_limits
+from flexsurr.config.aerodynamics import PanelCounts, load_feature_limits
 from flexsurr.config.flight import FlightCondition, FlightSettings, RandomFlights
-from flexsurr.config.panels import PanelCounts
 from flexsurr.evaluation.airliner_cost import (
     TORCH,
     airliner_cost,

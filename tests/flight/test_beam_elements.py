@@ -6,8 +6,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import eigh
 
-from flexsurr.flight.beam_element import BeamElement, element_axes, element_stiffness
-from flexsurr.flight.skeleton import LumpedMass, Skeleton, mass_properties
+from flexsurr.flight.skeleton import (
+    BeamElement,
+    LumpedMass,
+    Skeleton,
+    element_axes,
+    element_stiffness,
+    mass_properties,
+)
 
 LENGTH, MASS_PER_LENGTH = 10.0, 3.0
 SECTION = (1.0e9, 2.0e6, 5.0e6, 8.0e5)  # EA, EI flapwise, EI edgewise, GJ

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from flexsurr.aerodynamics.features import COEFFICIENTS, CONTROLS, FEATURES, LIFT
 from flexsurr.aerodynamics.standard_atmosphere import density, speed_of_sound
 from flexsurr.aerodynamics.vortex_lattice import rebuilt
-from flexsurr.config.panels import PanelCounts
+from flexsurr.config.aerodynamics import PanelCounts
 from flexsurr.config.study import Integrator
-from flexsurr.flight import states
+from flexsurr.flight import equations_of_motion as states
 from flexsurr.flight.airliner import flexible_airframe
 from flexsurr.flight.linear_aerodynamics import derivatives, linear_aerodynamics
 from flexsurr.flight.model import TO_BODY, Doublet, FlightModel, features

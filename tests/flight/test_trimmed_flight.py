@@ -7,12 +7,11 @@ import pytest
 
 from flexsurr.aerodynamics.features import LIFT, ROLL, SIDE, YAW
 from flexsurr.config.flight import FlightCondition, TrimLimits
+from flexsurr.flight.equations_of_motion import state_names
 from flexsurr.flight.linear_aerodynamics import linear_aerodynamics
 from flexsurr.flight.linearise import linearise, natural_modes, state_matrix
-from flexsurr.flight.manoeuvres import doublet, fly
+from flexsurr.flight.manoeuvres import doublet, fly, fly_stepped
 from flexsurr.flight.model import FlightModel, features
-from flexsurr.flight.states import state_names
-from flexsurr.flight.stepped import fly_stepped
 from flexsurr.flight.trim import TrimNotFound, trim, trim_envelope
 
 CRUISE = FlightCondition(mach=0.7, altitude_m=10000.0)

@@ -8,8 +8,8 @@ import pytest
 
 from flexsurr.aerodynamics.features import FEATURES
 from flexsurr.aerodynamics.sampling import draw_features, feature_intervals
+from flexsurr.config.aerodynamics import load_feature_limits
 from flexsurr.config.errors import ConfigurationError
-from flexsurr.config.feature_limits import load_feature_limits
 from flexsurr.config.settings import load
 from flexsurr.config.trial import MapNetwork
 from flexsurr.workflow.plan import Plan

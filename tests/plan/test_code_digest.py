@@ -145,14 +145,14 @@ def test_a_missing_module_or_function_is_named(root):
         ("simulate", "flexsurr.beam.compiled", "flexsurr.training"),
         ("manifest", "flexsurr.storage.manifest", "flexsurr.beam"),
         ("train", "flexsurr.training.fitting", "flexsurr.evaluation"),
-        ("score", "flexsurr.evaluation.selection", "flexsurr.report"),
+        ("score", "flexsurr.evaluation.scores", "flexsurr.report"),
         ("select", "flexsurr.training.selection", "flexsurr.beam"),
         ("trials", "flexsurr.training.fitting", "flexsurr.training.map_fitting"),
         ("shards", "flexsurr.beam.compiled", "flexsurr.storage.source_files"),
         ("train-map", "flexsurr.training.map_fitting", "flexsurr.beam"),
         ("score-map", "flexsurr.cli.runs:read_run", "flexsurr.beam"),
         ("draw", "flexsurr.report.style", "flexsurr.training"),
-        ("train", "flexsurr.storage.lock", "flexsurr.tracking"),
+        ("train", "flexsurr.storage.files", "flexsurr.tracking"),
     ],
 )
 def test_the_commands_depend_on_what_they_use(command, needs, does_without):

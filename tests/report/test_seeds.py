@@ -5,7 +5,7 @@ import math
 import pandas as pd
 import pytest
 
-from flexsurr.report.seeds import seeds
+from flexsurr.report.run_tables import seeds
 
 
 def run(seed: int, nmse: float | None, error: float | None = None, configuration: str = "hnn-0", **other):

@@ -7,8 +7,8 @@ import pytest
 from flexsurr.config.sweep import FieldSweep
 from flexsurr.config.trial import settings_of
 from flexsurr.report.figures import DRAW
+from flexsurr.report.run_tables import sweeps
 from flexsurr.report.style import save
-from flexsurr.report.sweeps import sweeps
 from flexsurr.report.trial_figures import WITHOUT
 from flexsurr.report.trial_settings import in_words, settings_that_differ
 from flexsurr.training import expand

@@ -8,9 +8,9 @@ import sys
 
 import pytest
 
-from flexsurr.storage.lock import NO_LOCKS, locked
+from flexsurr.storage.files import NO_LOCKS, locked
 
-SECOND = "import sys; from pathlib import Path; from flexsurr.storage.lock import locked\n"
+SECOND = "import sys; from pathlib import Path; from flexsurr.storage.files import locked\n"
 SECOND += "with locked(Path(sys.argv[1])): print('inside', flush=True)"
 
 

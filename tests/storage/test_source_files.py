@@ -9,8 +9,7 @@ from scipy.signal import savgol_filter
 
 from flexsurr.config.files import Columns, Filter
 from flexsurr.storage import StorageError
-from flexsurr.storage.derivatives import savitzky_golay
-from flexsurr.storage.source_files import filtered, find_files, read_recordings
+from flexsurr.storage.source_files import filtered, find_files, read_recordings, savitzky_golay
 
 Q, P = {"column": "theta", "unit": "rad"}, {"column": "L", "unit": "kg m^2/s"}
 COLUMNS = {"t": "time", "trajectory": "run", "pairs": [{"q": Q, "p": P}]}

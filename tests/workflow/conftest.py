@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from project import Project
 
-from flexsurr.storage.lock import locked
+from flexsurr.storage.files import locked
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 PARTS = ("Snakefile", "workflow", "profiles", "config", "examples")

@@ -158,7 +158,7 @@ def test_a_sweep_of_which_no_trial_finishes_ends_with_tables_that_say_so(copy_of
             {"shards", "manifest", "statics"},
         ),
         (
-            "flexsurr/storage/moments.py",
+            "flexsurr/storage/scales.py",
             {"manifest", "trials"},
             {"shards", "statics", "validation"},
         ),

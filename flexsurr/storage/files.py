@@ -1,13 +1,22 @@
-"""Files that are either there whole or not at all, and JSON objects in such files."""
+"""Files: there whole or not at all, JSON objects in them, and one process at a time in a folder."""
 
+import errno
+import fcntl
 import json
+import logging
 import os
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from flexsurr.storage.errors import DamagedFile, StorageError
+
+class StorageError(Exception):
+    """A file that must not be used; the message names it and says why."""
+
+
+class DamagedFile(StorageError):
+    """A file that is not what was written there: damaged, truncated or another's. It can be made again."""
 
 
 @contextmanager
@@ -55,3 +64,37 @@ def read_bytes(path: Path) -> bytes:
         return path.read_bytes()
     except OSError as error:
         raise StorageError(f"{path}: cannot be read: {error.strerror}") from None
+
+
+log = logging.getLogger(__name__)
+
+# What file systems answer that know no locks (some network and parallel ones), or no locks of folders.
+NO_LOCKS = {errno.EBADF, errno.EINVAL, errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP, errno.EOPNOTSUPP}
+
+
+@contextmanager
+def locked(folder: Path) -> Iterator[None]:
+    """Keep a second process out: one killed with its Snakemake may still be at work on the same run.
+
+    A file system without locks is a warning.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        try:
+            _lock(handle)
+        except OSError as error:
+            if error.errno not in NO_LOCKS:
+                raise
+            log.warning("%s: no locks here (%s); goes on without one", folder, error.strerror)
+        yield
+    finally:
+        os.close(handle)
+
+
+def _lock(handle: int) -> None:
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        log.info("waiting for another process that trains this run")
+        fcntl.flock(handle, fcntl.LOCK_EX)

@@ -1,4 +1,7 @@
-"""The intervals that the airliner's training samples are drawn from (config/aircraft/*_limits.yaml)."""
+"""What the airliner's aerodynamics is sampled with: its lattice's panels, and the features' intervals.
+
+Intervals are those of config/aircraft/*_limits.yaml.
+"""
 
 from pathlib import Path
 from typing import Annotated, Self
@@ -6,9 +9,24 @@ from typing import Annotated, Self
 from pydantic import Field, model_validator
 
 from flexsurr.config.flight import Control
-from flexsurr.config.merging import Source, build
-from flexsurr.config.reading import read_yaml
+from flexsurr.config.reading import Source, build, read_yaml
 from flexsurr.config.schema import Record
+
+Panels = Annotated[int, Field(ge=2)]
+
+
+class PanelCounts(Record):
+    """Strips along each half (or only) span, and panels along the chord: 360 panels in all by default."""
+
+    wing: tuple[Panels, Panels] = (24, 5)
+    """Along each half span and along the chord; along the span at least one for each part that sections and
+    control surfaces make of it.
+    """
+    horizontal_tail: tuple[Panels, Panels] = (10, 4)
+    """The same."""
+    vertical_tail: tuple[Panels, Panels] = (10, 4)
+    """Along its only span and along the chord."""
+
 
 LARGEST_MACH = 0.95
 HIGHEST_M = 20000.0
