@@ -17,7 +17,7 @@ import numpy as np
 from timing import compare
 
 from flexsurr.aerodynamics.airframe import Airframe, ModalMotion
-from flexsurr.aerodynamics.features import ALPHA, FEATURES, LIFT, MACH, Reference
+from flexsurr.aerodynamics.features import ALPHA, FEATURES, LIFT, MACH, ReferenceDimensions
 from flexsurr.aerodynamics.lattice import Lattice, panel
 from flexsurr.aerodynamics.vortex_lattice import rebuilt
 from flexsurr.config.aircraft import Section, Surface
@@ -70,7 +70,7 @@ def our_lattice() -> Lattice:
 
 def ours() -> Lift:
     lattice = our_lattice()
-    reference = Reference(AREA, 1.0, 2.0 * HALF_SPAN)
+    reference = ReferenceDimensions(AREA, 1.0, 2.0 * HALF_SPAN)
     form = rebuilt(Airframe(lattice, ModalMotion.none(lattice), reference, (0.25, 0.0, 0.0)))
     u = np.zeros(len(FEATURES))
     u[MACH], u[ALPHA] = 0.0, math.radians(ALPHA_DEG)

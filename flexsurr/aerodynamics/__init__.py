@@ -1,7 +1,7 @@
 """The airliner's aerodynamics: a vortex lattice rebuilt, frozen, or reduced to its quadratic form."""
 
 from flexsurr.aerodynamics.airframe import Airframe, ModalMotion, airframe_of
-from flexsurr.aerodynamics.features import COEFFICIENTS, FEATURES, Reference
+from flexsurr.aerodynamics.features import COEFFICIENTS, FEATURES, ReferenceDimensions
 from flexsurr.aerodynamics.lattice import Lattice, airliner_lattice, panel
 from flexsurr.aerodynamics.quadratic import quadratic
 from flexsurr.aerodynamics.vortex_lattice import MachGrid, fixed_machs, frozen, mach_grid, rebuilt
@@ -13,7 +13,7 @@ __all__ = [
     "Lattice",
     "MachGrid",
     "ModalMotion",
-    "Reference",
+    "ReferenceDimensions",
     "airframe_of",
     "airliner_lattice",
     "fixed_machs",

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from flexsurr.aerodynamics.features import MODES, Reference
+from flexsurr.aerodynamics.features import MODES, ReferenceDimensions
 from flexsurr.aerodynamics.horseshoe import ends_of
 from flexsurr.aerodynamics.lattice import Lattice
 from flexsurr.config.aircraft import Aircraft
@@ -45,7 +45,7 @@ class Airframe:
 
     lattice: Lattice
     motion: ModalMotion
-    reference: Reference
+    reference: ReferenceDimensions
     centre_of_gravity: tuple[float, float, float]
     parasite_drag_coefficient: float = 0.0
     munk_volume: float = 0.0
@@ -117,7 +117,7 @@ def airframe_of(
     return Airframe(
         lattice=lattice,
         motion=motion,
-        reference=Reference(
+        reference=ReferenceDimensions(
             aircraft.reference.area_m2, aircraft.reference.chord_m, aircraft.published.wing_span_m
         ),
         centre_of_gravity=centre_of_gravity,

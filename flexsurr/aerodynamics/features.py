@@ -47,7 +47,7 @@ MODES = 6
 CONTROLS = 6
 
 
-class Reference(NamedTuple):
+class ReferenceDimensions(NamedTuple):
     """Reference area [m²], chord [m] and span [m] of the coefficients."""
 
     area: float

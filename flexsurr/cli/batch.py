@@ -20,7 +20,7 @@ from flexsurr.workflow.code_digest import code_digest
 log = logging.getLogger(__name__)
 
 TRAINED = ("parameters.json", "fit.json", "history.parquet", "weights.npz", "best.npz")
-JUDGED = ("fit.json", "weights.npz", "best.npz")
+SCORED_FROM = ("fit.json", "weights.npz", "best.npz")
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,7 @@ def trials_of(
             [results / file for file in trial[which]] for which in ("trains_on", "scored_on")
         )
         data = sorted({file.parent for file in trains_on})
-        files = (*(folder / judged for judged in JUDGED), scored_on, folder / "metrics.json")
+        files = (*(folder / file for file in SCORED_FROM), scored_on, folder / "metrics.json")
         items += [
             Item(
                 key,
@@ -116,7 +116,7 @@ def trials_of(
                 f"{key}, its score",
                 _part(score),
                 trial["score"],
-                [*(f"{name}/{file}" for file in JUDGED), *trial["scored_on"]],
+                [*(f"{name}/{file}" for file in SCORED_FROM), *trial["scored_on"]],
                 [f"{name}/metrics.json"],
                 f"{name}/scored.json",
                 partial(score, trial["score"], *files),

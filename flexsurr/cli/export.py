@@ -106,8 +106,8 @@ def _aircraft(learned: LearnedMap, run_id: str, study: str, name: str | None) ->
     settings = StudyFiles(Path(), study, []).record(SampleStudy)
     flight = settings.flight
     modes = free_modes(stick_model(load_aircraft(Path(settings.aircraft))), flight.elastic_modes)
-    plane = FlightModel(modes, learned.compiled(), chosen=flight.aerodynamic_modes)
-    level = trim(plane, flight.condition, flight.limits)
+    model = FlightModel(modes, learned.compiled(), chosen=flight.aerodynamic_modes)
+    level = trim(model, flight.condition, flight.limits)
     about = (
         f"The aircraft of the study {study} in flight, its aerodynamics the {learned.kind} {run_id}.",
         f"At the start in trim at Mach {flight.condition.mach:g} and {flight.condition.altitude_m:g} m.",

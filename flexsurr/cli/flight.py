@@ -23,7 +23,14 @@ from flexsurr.evaluation.airliner_cost import (
     fly_all,
 )
 from flexsurr.evaluation.airliner_flights import Flight, flown, outputs, random_flights
-from flexsurr.evaluation.airliner_models import ONE_MACH, REFERENCE, Airliner, airliner, frozen_at, lattices
+from flexsurr.evaluation.airliner_models import (
+    ONE_MACH,
+    REFERENCE,
+    Airliner,
+    build_airliner,
+    frozen_at,
+    lattices,
+)
 from flexsurr.evaluation.airliner_modes import airliner_modes, left_out_modes
 from flexsurr.evaluation.airliner_modes import elastic_modes as what_modes_are
 from flexsurr.evaluation.columns import ACCURACY_COLUMNS
@@ -39,7 +46,7 @@ from flexsurr.training.map_data import held_out_errors, map_data
 
 def airliner_of(job: Job) -> Airliner:
     """The airliner that the job's aircraft, flight and panels describe."""
-    return airliner(
+    return build_airliner(
         Aircraft.model_validate(job["aircraft"]),
         FlightSettings.model_validate(job["flight"]),
         FeatureLimits.model_validate(job["limits"]),
@@ -48,11 +55,11 @@ def airliner_of(job: Job) -> Airliner:
 
 
 def forms_of(
-    job: Job, plane: Airliner, networks: Mapping[str, NetworkMap], with_rebuild: bool
+    job: Job, airliner: Airliner, networks: Mapping[str, NetworkMap], with_rebuild: bool
 ) -> dict[str, CompiledMapping]:
     """The lattice's forms with the samples' boundary condition, and the networks."""
     return {
-        **lattices(plane, job["boundary_condition"], with_rebuild=with_rebuild),
+        **lattices(airliner, job["boundary_condition"], with_rebuild=with_rebuild),
         **{label: network.compiled() for label, network in networks.items()},
     }
 
@@ -133,21 +140,21 @@ def fly(
 
     Trims are found over the whole envelope, modes and doublets at the study's own condition.
     """
-    plane = airliner_of(job)
-    settings = plane.settings
+    airliner = airliner_of(job)
+    settings = airliner.settings
     networks = {
         label: network for label, network in selected_networks(selection, runs).items() if label == NETWORK
     }
-    forms = forms_of(job, plane, networks, with_rebuild=False)
+    forms = forms_of(job, airliner, networks, with_rebuild=False)
     cruise = {}
     for name, mapping in forms.items():
         try:
-            cruise[name] = trim(plane.flying(mapping), settings.condition, settings.limits)
+            cruise[name] = trim(airliner.flying(mapping), settings.condition, settings.limits)
         except TrimNotFound as error:
             raise TrimNotFound(f"{name}: {error}") from None
     write_frame(modes, airliner_modes(cruise[REFERENCE], cruise.get(NETWORK)))
-    write_frame(left_out, left_out_modes(plane))
-    write_frame(elastic_modes, what_modes_are(plane))
+    write_frame(left_out, left_out_modes(airliner))
+    write_frame(elastic_modes, what_modes_are(airliner))
     histories = []
     for control in CONTROL_NAMES:
         flight = Flight(0, control, settings.condition, settings.doublet_deg)
@@ -166,7 +173,7 @@ def fly(
     ]
     rows = []
     for name, mapping in forms.items():
-        found, missing = trim_envelope(plane.flying(mapping), conditions, settings.limits)
+        found, missing = trim_envelope(airliner.flying(mapping), conditions, settings.limits)
         for reason in missing:
             log.warning("%s: %s", name, reason)
         for point in found:
@@ -204,19 +211,21 @@ def fly_randomly(
     """
     from flexsurr.training.networks import TorchMap, export_error  # here, for torch takes seconds
 
-    plane = airliner_of(job)
+    airliner = airliner_of(job)
     networks = selected_networks(selection, runs)
     network = networks.get(NETWORK)
-    compiled = forms_of(job, plane, networks, with_rebuild=True)
+    compiled = forms_of(job, airliner, networks, with_rebuild=True)
     forms: dict[str, CompiledMapping | OfEachFlight] = {
-        ONE_MACH: lambda condition: frozen_at(plane, condition.mach, job["boundary_condition"]),
+        ONE_MACH: lambda condition: frozen_at(airliner, condition.mach, job["boundary_condition"]),
         **compiled,
     }
     with measuring():
         flown, left = fly_all(
-            plane,
+            airliner,
             forms,
-            random_flights(plane.settings, plane.limits, partial(_has_trim, plane, compiled[REFERENCE])),
+            random_flights(
+                airliner.settings, airliner.limits, partial(_has_trim, airliner, compiled[REFERENCE])
+            ),
             None if network is None else (network.inputs.low, network.inputs.high),
             None if network is None else TorchMap(network),
         )
@@ -229,13 +238,13 @@ def fly_randomly(
         for model, known in zip(table["model"], of_a_network, strict=True)
     ]
     write_frame(cost, table)
-    write_frame(rows, as_cost_rows(table, job["boundary_condition"], plane.settings.step_s))
+    write_frame(rows, as_cost_rows(table, job["boundary_condition"], airliner.settings.step_s))
     write_frame(limits, exceedance_summary(left))
 
 
-def _has_trim(plane: Airliner, lattice: CompiledMapping, condition: FlightCondition) -> bool:
+def _has_trim(airliner: Airliner, lattice: CompiledMapping, condition: FlightCondition) -> bool:
     try:
-        trim(plane.flying(lattice), condition, plane.settings.limits)
+        trim(airliner.flying(lattice), condition, airliner.settings.limits)
     except TrimNotFound:
         return False
     return True

@@ -38,8 +38,12 @@ def _of_aircraft(flight: Job) -> dict[str, Any]:
     # here, for it takes a second that no figure of another study needs
     from flexsurr.cli.flight import airliner_of
 
-    plane = airliner_of(flight)
-    return {"free_modes": plane.modes, "lattice": plane.airframe.lattice, "doublet": plane.settings.doublet}
+    airliner = airliner_of(flight)
+    return {
+        "free_modes": airliner.modes,
+        "lattice": airliner.airframe.lattice,
+        "doublet": airliner.settings.doublet,
+    }
 
 
 @for_rules(results="the folder of all results", captions="what to see in them", folder="of the tables")

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexsurr.evaluation.cases import Reference
+from flexsurr.evaluation.cases import ReferenceSolution
 from flexsurr.simulation.rhs import Array
 
 SHORT_S = 2.0
@@ -23,7 +23,7 @@ class TipError:
     phase_lag_s: float
 
 
-def tip_error_percent(reference: Reference, motion: Array) -> Array:
+def tip_error_percent(reference: ReferenceSolution, motion: Array) -> Array:
     """‖motion − reference's motion‖ over the reference's largest displacement from rest, in percent, (k,).
 
     `motion` (k, 3) [m] in the clamp's frame or (k, 1) [rad], as `cases.tip_motion` has it, holds the first
@@ -33,7 +33,7 @@ def tip_error_percent(reference: Reference, motion: Array) -> Array:
     return np.asarray(100.0 * distance / reference.peak)
 
 
-def tip_error(reference: Reference, motion: Array) -> TipError:
+def tip_error(reference: ReferenceSolution, motion: Array) -> TipError:
     """The largest errors of `motion` (as above) over the whole response and over its first `SHORT_S`."""
     error = tip_error_percent(reference, motion)
     short = reference.t[: error.size] <= reference.t[0] + SHORT_S

@@ -45,7 +45,7 @@ PAPER_PERCENT: dict[str, tuple[float, float]] = {NETWORK: (0.995, 0.025), TORCH:
 
 
 def fly_all(
-    plane: Airliner,
+    airliner: Airliner,
     aerodynamics: Mapping[str, CompiledMapping | OfEachFlight],
     flights: Sequence[Flight],
     limits: tuple[Array, Array] | None = None,
@@ -65,24 +65,24 @@ def fly_all(
     rows: list[dict[str, object]] = []
     exceedances: list[pd.DataFrame] = []
     for place, flight in enumerate(flights):
-        first_few = place < plane.settings.random_flights.rebuild_flights
+        first_few = place < airliner.settings.random_flights.rebuild_flights
         flown_by: dict[str, tuple[Trim, Trajectory]] = {}
         for model, form in aerodynamics.items():
             if model == REBUILT and not first_few:
                 continue
             mapping = form if isinstance(form, CompiledMapping) else form(flight.condition)
             try:
-                start = trim(plane.flying(mapping), flight.condition, plane.settings.limits)
+                start = trim(airliner.flying(mapping), flight.condition, airliner.settings.limits)
             except TrimNotFound as error:
                 log.warning("flight %d, %s: %s", flight.number, model, error)
                 continue
-            row, trajectory = _timed(model, start, flight, plane.settings, flown, mapping, first_few)
+            row, trajectory = _timed(model, start, flight, airliner.settings, flown, mapping, first_few)
             flown_by[model] = start, trajectory
             rows.append(row)
         if in_torch is not None and NETWORK in flown_by:
             start, _ = flown_by[NETWORK]
             stepped = partial(flown_stepped, coefficients=in_torch)
-            row, trajectory = _timed(TORCH, start, flight, plane.settings, stepped, in_torch, first_few)
+            row, trajectory = _timed(TORCH, start, flight, airliner.settings, stepped, in_torch, first_few)
             flown_by[TORCH] = start, trajectory
             rows.append(row)
         for row in rows[-len(flown_by) :] if REFERENCE in flown_by else []:
@@ -92,7 +92,7 @@ def fly_all(
                 row.update({f"{name}_error_percent": error for name, error in errors.items()})
         if limits is not None and NETWORK in flown_by:
             start, trajectory = flown_by[NETWORK]
-            exceedances.append(limit_exceedances(start, flight, trajectory, plane.settings, *limits))
+            exceedances.append(limit_exceedances(start, flight, trajectory, airliner.settings, *limits))
         log.info(
             "flight %d of %d: %s of %.1f deg at Mach %.3f, %d aerodynamics",
             place + 1,

@@ -41,7 +41,7 @@ class Airliner:
         return FlightModel(self.modes, aerodynamics, chosen=self.settings.aerodynamic_modes)
 
 
-def airliner(
+def build_airliner(
     aircraft: Aircraft, settings: FlightSettings, limits: FeatureLimits, counts: PanelCounts | None = None
 ) -> Airliner:
     """The airliner of an aircraft file, flown by `settings` within `limits`."""
@@ -50,29 +50,34 @@ def airliner(
 
 
 def frozen_at(
-    plane: Airliner, mach: float, boundary_condition: BoundaryCondition = "exact"
+    airliner: Airliner, mach: float, boundary_condition: BoundaryCondition = "exact"
 ) -> CompiledMapping:
     """The lattice with matrices frozen at a single Mach number, which stays that of the flight's trim.
 
     The cheapest lattice there is; `REFERENCE` interpolates between three and costs three times as much.
     """
-    return frozen(plane.airframe, fixed_machs([mach]), boundary_condition)
+    return frozen(airliner.airframe, fixed_machs([mach]), boundary_condition)
 
 
 def lattices(
-    plane: Airliner, boundary_condition: BoundaryCondition = "exact", with_rebuild: bool = True
+    airliner: Airliner, boundary_condition: BoundaryCondition = "exact", with_rebuild: bool = True
 ) -> dict[str, CompiledMapping]:
     """The lattice's forms by name: vlm_rebuild (if asked for), vlm_frozen, quadratic.
 
     The frozen ones know the Mach numbers of the settings and the limits, and a little beyond. The quadratic
     form's boundary condition is linear, whatever that of the others.
     """
-    settings = plane.settings
-    machs = [*settings.envelope_mach, plane.limits.mach.low, plane.limits.mach.high, settings.condition.mach]
+    settings = airliner.settings
+    machs = [
+        *settings.envelope_mach,
+        airliner.limits.mach.low,
+        airliner.limits.mach.high,
+        settings.condition.mach,
+    ]
     grid = mach_grid(max(min(machs) - _MACH_MARGIN, 0.0), min(max(machs) + _MACH_MARGIN, _LARGEST_MACH))
-    forms = {"vlm_rebuild": rebuilt(plane.airframe, boundary_condition)} if with_rebuild else {}
+    forms = {"vlm_rebuild": rebuilt(airliner.airframe, boundary_condition)} if with_rebuild else {}
     return {
         **forms,
-        REFERENCE: frozen(plane.airframe, grid, boundary_condition),
-        "quadratic": quadratic(plane.airframe, grid),
+        REFERENCE: frozen(airliner.airframe, grid, boundary_condition),
+        "quadratic": quadratic(airliner.airframe, grid),
     }

@@ -15,11 +15,11 @@ from flexsurr.flight.modes import mode_names, motions
 from flexsurr.flight.trim import Trim, trim
 
 # The paper's numbers of the six modes that the aerodynamics knows (text to its Fig. 21): three symmetric
-# about the plane y = 0, three "asymmetric".
+# about the airliner y = 0, three "asymmetric".
 PAPER_SYMMETRIC, PAPER_ANTISYMMETRIC = (1, 6, 7), (2, 5, 8)
 
 
-def elastic_modes(plane: Airliner) -> pd.DataFrame:
+def elastic_modes(airliner: Airliner) -> pd.DataFrame:
     """What each elastic mode is, and which of the paper's it corresponds to.
 
     Columns: mode, frequency_hz, symmetric, name, share_percent (of the mode's kinetic energy, in what the
@@ -27,7 +27,7 @@ def elastic_modes(plane: Airliner) -> pd.DataFrame:
     order among the symmetric and among the antisymmetric ones that the aerodynamics knows; `paper_mode` is
     missing for others, and for all where there are not three of each.
     """
-    modes, chosen = plane.modes, plane.settings.aerodynamic_modes
+    modes, chosen = airliner.modes, airliner.settings.aerodynamic_modes
     corresponding: dict[int, int] = {}
     for symmetric, published in ((True, PAPER_SYMMETRIC), (False, PAPER_ANTISYMMETRIC)):
         ours = [k for k in sorted(chosen) if modes.symmetric[k - 1] == symmetric]
@@ -77,22 +77,24 @@ def airliner_modes(reference: Trim, surrogate: Trim | None) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def left_out_modes(plane: Airliner) -> pd.DataFrame:
+def left_out_modes(airliner: Airliner) -> pd.DataFrame:
     """What it changes that the aerodynamics does not know some of the elastic modes.
 
     It knows six at most, so the modes left out take the places of as many of the last ones in a second
     aerodynamics, the quadratic form, and are compared with a third that knows neither. Columns: mode,
     without_real, without_imag, with_real, with_imag [1/s], change_percent of the eigenvalue's magnitude.
     """
-    settings = plane.settings
+    settings = airliner.settings
     numbers = range(1, settings.elastic_modes + 1)
     left_out = tuple(k for k in numbers if k not in settings.aerodynamic_modes)[:AERODYNAMIC_MODES]
     kept = settings.aerodynamic_modes[: AERODYNAMIC_MODES - len(left_out)]
     grid = fixed_machs([settings.condition.mach])
     trims = []
     for chosen in (kept, tuple(sorted((*kept, *left_out)))):
-        airframe = replace(plane.airframe, motion=modal_motion(plane.modes, plane.airframe.lattice, chosen))
-        model = FlightModel(plane.modes, quadratic(airframe, grid), chosen=chosen)
+        airframe = replace(
+            airliner.airframe, motion=modal_motion(airliner.modes, airliner.airframe.lattice, chosen)
+        )
+        model = FlightModel(airliner.modes, quadratic(airframe, grid), chosen=chosen)
         trims.append(trim(model, settings.condition, settings.limits))
     frame = airliner_modes(*trims).rename(
         columns={

@@ -51,7 +51,7 @@ class Case:
 
 
 @dataclass(frozen=True)
-class Reference:
+class ReferenceSolution:
     """A tight solution: times t (m,), states x (m, 2r), `motion` (m, k) of the tip and its largest size.
 
     `energy` (m,) [J] is the exact Hamiltonian along it.
@@ -138,7 +138,7 @@ def under(model: Model, basis: ModalBasis, case: Case, implementation: Implement
 
 def reference_solution(
     basis: ModalBasis, variant: Variant, case: Case, t: Array, integrator: Integrator
-) -> Reference:
+) -> ReferenceSolution:
     """The reduced-order model of `variant`, integrated tightly by the study's `reference_integrator`.
 
     Raises ArithmeticError if the reference itself does not reach the end, or does not move: then nothing can
@@ -158,11 +158,11 @@ def reference_solution(
             f"motion ({cause})"
         )
     energy = energy_above_rest(basis, variant, trajectory.x)
-    return Reference(case=case, t=t, x=trajectory.x, motion=motion, energy=energy, peak=peak)
+    return ReferenceSolution(case=case, t=t, x=trajectory.x, motion=motion, energy=energy, peak=peak)
 
 
 def reference_solutions(
     basis: ModalBasis, variant: Variant, cases: list[Case], t: Array, integrator: Integrator
-) -> Iterator[Reference]:
+) -> Iterator[ReferenceSolution]:
     """One tight solution per case."""
     return (reference_solution(basis, variant, case, t, integrator) for case in cases)

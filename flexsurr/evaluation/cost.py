@@ -14,7 +14,7 @@ from flexsurr.beam import ModalBasis, reduced_order
 from flexsurr.config.study import EvaluationSettings, Integrator, Study, Variant
 from flexsurr.evaluation.accuracy import tip_error
 from flexsurr.evaluation.cases import (
-    Reference,
+    ReferenceSolution,
     Response,
     energy_above_rest,
     evaluation_cases,
@@ -149,7 +149,7 @@ def measurements(
             )
     # All that is timed has been: the other cores may help now.
     with ThreadPoolExecutor(cores()) as pool:
-        rows = pd.DataFrame(pool.map(partial(_judged, basis, variant), timed))
+        rows = pd.DataFrame(pool.map(partial(_measured, basis, variant), timed))
     for names, part in rows.groupby(["model", "implementation", "integrator"], sort=False):
         log.info(
             "%s %s: %s, worst tip error %.3g %%, %d diverged",
@@ -167,12 +167,12 @@ class Timed:
     """One simulation that has been timed, and what it is to be judged by."""
 
     setup: Setup
-    reference: Reference
+    reference: ReferenceSolution
     trajectory: Trajectory
     wall_s: float
 
 
-def _timed(setup: Setup, basis: ModalBasis, reference: Reference, repeats: int) -> Timed:
+def _timed(setup: Setup, basis: ModalBasis, reference: ReferenceSolution, repeats: int) -> Timed:
     model = setup.contender.under(basis, reference.case)
     _first_steps(setup, basis, reference)
     trajectory, wall_s = wall_time(
@@ -181,7 +181,7 @@ def _timed(setup: Setup, basis: ModalBasis, reference: Reference, repeats: int) 
     return Timed(setup, reference, trajectory, wall_s)
 
 
-def _judged(basis: ModalBasis, variant: Variant, timed: Timed) -> dict[str, Any]:
+def _measured(basis: ModalBasis, variant: Variant, timed: Timed) -> dict[str, Any]:
     """The row of one simulation."""
     setup, reference, trajectory = timed.setup, timed.reference, timed.trajectory
     exact = reduced_order(basis, variant, "numpy")
@@ -209,7 +209,7 @@ def _judged(basis: ModalBasis, variant: Variant, timed: Timed) -> dict[str, Any]
     }
 
 
-def _first_steps(setup: Setup, basis: ModalBasis, reference: Reference) -> None:
+def _first_steps(setup: Setup, basis: ModalBasis, reference: ReferenceSolution) -> None:
     """They load or compile what the timed ones use."""
     model = setup.contender.under(basis, reference.case)
     _run(model, reference.t[:2], reference.case.x0, setup.integrator)

@@ -16,7 +16,7 @@ from flexsurr.config.structure import Structure
 from flexsurr.config.study import Integrator, Study, Variant
 from flexsurr.evaluation.cases import (
     DRAWN_EVERY_S,
-    Reference,
+    ReferenceSolution,
     Response,
     energy_above_rest,
     evaluation_cases,
@@ -61,7 +61,7 @@ def drift_percent(energy: Array, t: Array, free_from_s: float = 0.0) -> float:
 
 
 def energy_error_percent(
-    structure: Structure, reference: Reference, energy: Array, free_from_s: float
+    structure: Structure, reference: ReferenceSolution, energy: Array, free_from_s: float
 ) -> float:
     """What the tables call energy drift [%], of `energy` (k,) [J] at the reference's first k times.
 
@@ -73,7 +73,7 @@ def energy_error_percent(
     return float(deviation_percent(reference, energy).max())
 
 
-def deviation_percent(reference: Reference, energy: Array) -> Array:
+def deviation_percent(reference: ReferenceSolution, energy: Array) -> Array:
     """|H − H_ref|/max |H_ref| in percent (k,) of `energy` (k,) [J] at the reference's first k times."""
     distance = np.abs(energy - reference.energy[: energy.size])
     return np.asarray(100.0 * distance / np.abs(reference.energy).max())
@@ -115,7 +115,11 @@ def energy_table(
 
 
 def _energy(
-    basis: ModalBasis, variant: Variant, reference: Reference, contender: Contender, integrator: Integrator
+    basis: ModalBasis,
+    variant: Variant,
+    reference: ReferenceSolution,
+    contender: Contender,
+    integrator: Integrator,
 ) -> pd.DataFrame:
     case = reference.case
     trajectory = simulate(contender.under(basis, case), reference.t, case.x0, integrator)

@@ -11,7 +11,7 @@ from flexsurr.config.study import Study, Variant
 from flexsurr.evaluation.accuracy import tip_error_percent
 from flexsurr.evaluation.cases import (
     DRAWN_EVERY_S,
-    Reference,
+    ReferenceSolution,
     Response,
     evaluation_cases,
     excitation,
@@ -62,7 +62,7 @@ def response_table(
 
 
 def _frame(
-    variant: str, response: str, model: str, reference: Reference, exact: BeamModel, x: Array
+    variant: str, response: str, model: str, reference: ReferenceSolution, exact: BeamModel, x: Array
 ) -> pd.DataFrame:
     tip = exact.tip(x)
     return pd.DataFrame(

@@ -12,7 +12,7 @@ from flexsurr.config.study import Study, Variant
 from flexsurr.evaluation.accuracy import tip_error
 from flexsurr.evaluation.cases import (
     FIRST_SELECTION_CASE,
-    Reference,
+    ReferenceSolution,
     energy_above_rest,
     free_cases,
     reference_solutions,
@@ -44,7 +44,7 @@ def _finite(value: float) -> float | None:
     return value if math.isfinite(value) else None
 
 
-def long_responses(study: Study, basis: ModalBasis, variant: Variant) -> list[Reference]:
+def long_responses(study: Study, basis: ModalBasis, variant: Variant) -> list[ReferenceSolution]:
     """`study.evaluation.long_responses` free responses of the reference from states no training has seen."""
     settings = study.evaluation
     t = sample_times(settings.duration_s, settings.output_step_s)
@@ -53,7 +53,7 @@ def long_responses(study: Study, basis: ModalBasis, variant: Variant) -> list[Re
 
 
 def long_response_errors(
-    study: Study, basis: ModalBasis, variant: Variant, surrogate: Any, references: Iterable[Reference]
+    study: Study, basis: ModalBasis, variant: Variant, surrogate: Any, references: Iterable[ReferenceSolution]
 ) -> dict[str, float | int | None]:
     """Errors of the surrogate's responses from where `references` (of `long_responses`) start.
 

@@ -24,7 +24,7 @@ from flexsurr.report.style import (
 LARGEST_PERCENT = 1e3
 """Errors beyond, and responses that did not reach their end, stand at this height."""
 
-JUDGED = ("held_out_nmse", "long_response_error_percent_worst")
+SCORES = ("held_out_nmse", "long_response_error_percent_worst")
 """What only runs have that finished."""
 
 BY_PAIRS = "by_pairs"
@@ -54,20 +54,20 @@ def architecture_errors(metrics: pd.DataFrame) -> Figure:
     responses did not reach its end.
     """
     # where no run has finished, none says what it errs by
-    metrics = metrics.reindex(columns=[*metrics.columns, *(name for name in JUDGED if name not in metrics)])
+    metrics = metrics.reindex(columns=[*metrics.columns, *(name for name in SCORES if name not in metrics)])
     variants = [variant for variant in VARIANTS if variant in set(metrics["variant"])]
     figure = new_figure(PAGE_IN, 3.9)
     axes = figure.subplots(1, len(variants), sharex=True, sharey=True, squeeze=False)[0]
-    judged = metrics[metrics["held_out_nmse"].notna()].fillna({"scaling": BY_PAIRS})
+    scored = metrics[metrics["held_out_nmse"].notna()].fillna({"scaling": BY_PAIRS})
     for ax, variant in zip(axes, variants, strict=True):
-        for _, run in judged[judged["variant"] == variant].iterrows():
+        for _, run in scored[scored["variant"] == variant].iterrows():
             _point(ax, run)
         ax.axhline(LARGEST_PERCENT, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)), zorder=1)
         logarithmic(ax, x=True, y=True)
         ax.set(xlabel="nmse of the field on held-out trajectories [–]")
         ax.set_title(VARIANTS[variant], loc="left")
     axes[0].set_ylabel("worst tip error of long responses [% of the peak]")
-    figure.legend(handles=_handles(judged), loc="outside upper center", ncols=4)
+    figure.legend(handles=_handles(scored), loc="outside upper center", ncols=4)
     letter(axes)
     return figure
 
@@ -92,12 +92,12 @@ def _fill(dataset: str, line: str) -> str:
     return {"default": line, CONFIGURATIONS: PALE}.get(dataset, "white")
 
 
-def _handles(judged: pd.DataFrame) -> list[Line2D]:
+def _handles(scored: pd.DataFrame) -> list[Line2D]:
     handles = [
         Line2D([], [], color=colour(name), marker="o", linestyle="", label=label(name))
-        for name in sorted(set(judged["architecture"]))
+        for name in sorted(set(scored["architecture"]))
     ]
-    used = set(zip(judged["normalisation"], judged["scaling"], strict=True))
+    used = set(zip(scored["normalisation"], scored["scaling"], strict=True))
     for setting, marker in MARKERS.items():
         if setting in used:
             modes, scaling = setting
@@ -105,7 +105,7 @@ def _handles(judged: pd.DataFrame) -> list[Line2D]:
                 f"{'unit-norm' if modes == 'unit' else 'mass-normalised'} modes, {scaling.replace('_', ' ')}"
             )
             handles.append(Line2D([], [], color=BLACK, marker=marker, linestyle="", label=text))
-    for name in sorted(set(judged["dataset"])):
+    for name in sorted(set(scored["dataset"])):
         told = {"default": "the study's dataset", CONFIGURATIONS: "no simulation"}
         text, fill = told.get(name, f"dataset {name}"), _fill(name, BLACK)
         handles.append(

@@ -48,7 +48,7 @@ class Machine:
 
 
 @dataclass
-class Trial:
+class TrackedRun:
     """What a running trial tells the page. `status` and `reason` become those of its run at its end."""
 
     status: str = "finished"
@@ -90,7 +90,7 @@ class Trial:
 
 
 @contextmanager
-def tracked(store: Store | None, described: Described, folder: Path) -> Iterator[Trial]:
+def tracked(store: Store | None, described: Described, folder: Path) -> Iterator[TrackedRun]:
     """A child run of the study's sweeps for the time of the block; without a store, a trial untold.
 
     `described` is what the parameters.json in `folder` says. A run of the same key that an earlier, killed
@@ -98,7 +98,7 @@ def tracked(store: Store | None, described: Described, folder: Path) -> Iterator
     FAILED where the trial says so or an exception passes, both with their reason as a tag, or KILLED where
     the process is told to stop. Where the page lacks any of it, `folder` holds a file that says so.
     """
-    trial, files = Trial(), RunFiles(folder)
+    trial, files = TrackedRun(), RunFiles(folder)
     page = Page(store)
     run = None
     status, logged = "KILLED", False

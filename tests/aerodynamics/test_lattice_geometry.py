@@ -5,7 +5,13 @@ import pytest
 from wings import AIRLINER, CENTRE_OF_GRAVITY, FEW
 
 from flexsurr.aerodynamics.airframe import Airframe, ModalMotion, apparent_mass_difference
-from flexsurr.aerodynamics.features import COEFFICIENT_UNITS, COEFFICIENTS, FEATURE_UNITS, FEATURES, Reference
+from flexsurr.aerodynamics.features import (
+    COEFFICIENT_UNITS,
+    COEFFICIENTS,
+    FEATURE_UNITS,
+    FEATURES,
+    ReferenceDimensions,
+)
 from flexsurr.aerodynamics.lattice import (
     AILERON_LEFT,
     AILERON_RIGHT,
@@ -82,7 +88,7 @@ def test_mistakes_are_named():
     zeros = np.zeros((len(lattice), 3, 7))
     motion = ModalMotion(zeros[..., :6], zeros[:28], zeros)
     with pytest.raises(ValueError, match=r"rotation has the shape \(28, 3, 7\)"):
-        Airframe(lattice, motion, Reference(1.0, 1.0, 1.0), CENTRE_OF_GRAVITY)
+        Airframe(lattice, motion, ReferenceDimensions(1.0, 1.0, 1.0), CENTRE_OF_GRAVITY)
     with pytest.raises(ValueError, match=r"Mach 0\.95"):
         mach_grid(0.4, 0.95)
     with pytest.raises(ValueError, match="low < high"):

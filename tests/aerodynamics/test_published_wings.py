@@ -10,7 +10,7 @@ import pytest
 from optvl import OVLSolver
 from wings import lift_drag_moment, wing
 
-from flexsurr.aerodynamics.features import ALPHA, FEATURES, LIFT, MACH, Reference
+from flexsurr.aerodynamics.features import ALPHA, FEATURES, LIFT, MACH, ReferenceDimensions
 from flexsurr.aerodynamics.vortex_lattice import rebuilt
 from flexsurr.config.aircraft import Section
 
@@ -19,7 +19,7 @@ from flexsurr.config.aircraft import Section
 def test_the_swept_wing_of_bertin_and_smith(strips, chordwise, published):
     # Bertin, Smith, Aerodynamics for Engineers, example 7.2: aspect ratio 5, 45° of sweep, no taper
     section = Section(length_m=0.5, chord_m=(0.2, 0.2), sweep_deg=45.0)
-    airframe = wing((section,), strips, chordwise, Reference(0.2, 0.2, 1.0))
+    airframe = wing((section,), strips, chordwise, ReferenceDimensions(0.2, 0.2, 1.0))
     u = np.zeros(len(FEATURES))
     u[MACH], u[ALPHA] = 0.0, 1e-4
     lift = rebuilt(airframe)(u)[LIFT] / 1e-4
@@ -30,7 +30,7 @@ def test_the_warren_12_wing():
     # a planform much used to compare methods: aspect ratio 2√2, taper 1/3, moments about the apex
     span = 2.0 * math.sqrt(2.0)
     section = Section(length_m=0.5 * span, chord_m=(1.5, 0.5), sweep_deg=53.54)
-    lift, _, moment = lift_drag_moment(wing((section,), 16, 6, Reference(span, 1.0, span)), 1e-4)
+    lift, _, moment = lift_drag_moment(wing((section,), 16, 6, ReferenceDimensions(span, 1.0, span)), 1e-4)
     assert lift / 1e-4 == pytest.approx(2.743, rel=0.03)
     assert moment / 1e-4 == pytest.approx(-3.10, rel=0.03)
 
@@ -51,7 +51,7 @@ def test_an_elliptic_wing_has_the_least_induced_drag():
             for k in range(sections)
         )
         area = 0.25 * math.pi * span * root
-        airframe = wing(parts, 2 * sections, 4, Reference(area, root, span))
+        airframe = wing(parts, 2 * sections, 4, ReferenceDimensions(area, root, span))
         lift, drag, _ = lift_drag_moment(airframe, math.radians(4.0))
         return lift**2 / (math.pi * span**2 / area) / drag
 
@@ -101,7 +101,7 @@ def test_lift_induced_drag_and_moment_are_those_of_avl(avl, mach):
         sweep_deg=math.degrees(math.atan(2.0 / length)),
         dihedral_deg=math.degrees(math.atan(0.3 / 4.0)),
     )
-    airframe = wing((section,), 12, 6, Reference(8.0, 1.0, 8.0), (0.25, 0.0, 0.0))
+    airframe = wing((section,), 12, 6, ReferenceDimensions(8.0, 1.0, 8.0), (0.25, 0.0, 0.0))
     lift, drag, moment = lift_drag_moment(airframe, math.radians(5.0), mach)
     avl.set_variable("alpha", 5.0)
     avl.set_parameter("Mach", mach)

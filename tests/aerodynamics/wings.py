@@ -5,7 +5,16 @@ from pathlib import Path
 import numpy as np
 
 from flexsurr.aerodynamics.airframe import Airframe, ModalMotion, airframe_of
-from flexsurr.aerodynamics.features import ALPHA, ALTITUDE, DRAG, FEATURES, LIFT, MACH, PITCH, Reference
+from flexsurr.aerodynamics.features import (
+    ALPHA,
+    ALTITUDE,
+    DRAG,
+    FEATURES,
+    LIFT,
+    MACH,
+    PITCH,
+    ReferenceDimensions,
+)
 from flexsurr.aerodynamics.lattice import Lattice, PanelCounts, airliner_lattice, panel
 from flexsurr.aerodynamics.vortex_lattice import fixed_machs, frozen
 from flexsurr.config.aircraft import Section, Surface, load_aircraft
@@ -25,7 +34,7 @@ def wing(
     sections: tuple[Section, ...],
     strips: int,
     chordwise: int,
-    reference: Reference,
+    reference: ReferenceDimensions,
     moments_about: tuple[float, float, float] = (0.0, 0.0, 0.0),
 ) -> Airframe:
     """A wing symmetric about y = 0 with its apex at the origin."""

@@ -6,14 +6,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flexsurr.evaluation.accuracy import phase_lag, tip_error, tip_error_percent
-from flexsurr.evaluation.cases import Case, Reference
+from flexsurr.evaluation.cases import Case, ReferenceSolution
 
 T = np.linspace(0.0, 4.0, 401)
 
 
-def reference(amplitude_m: float = 0.5) -> Reference:
+def reference(amplitude_m: float = 0.5) -> ReferenceSolution:
     tip = np.stack([np.ones_like(T), np.zeros_like(T), amplitude_m * np.sin(10.0 * T - 1.0)], axis=1)
-    return Reference(Case(0, np.zeros(2)), T, np.zeros((T.size, 2)), tip, np.ones_like(T), amplitude_m)
+    return ReferenceSolution(
+        Case(0, np.zeros(2)), T, np.zeros((T.size, 2)), tip, np.ones_like(T), amplitude_m
+    )
 
 
 def test_a_solution_has_no_error_against_itself():

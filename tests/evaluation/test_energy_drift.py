@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flexsurr.beam import reduce
-from flexsurr.evaluation.cases import Case, Reference, energy_above_rest, rest_state
+from flexsurr.evaluation.cases import Case, ReferenceSolution, energy_above_rest, rest_state
 from flexsurr.evaluation.energy import (
     ENERGY_COLUMNS,
     drift_percent,
@@ -40,7 +40,7 @@ def test_where_something_dissipates_the_distance_from_the_reference_counts(struc
     """An energy that falls as the reference's does has no error, one that is conserved has a large one."""
     t = np.linspace(0.0, 1.0, 11)
     falling = 8.0 * np.exp(-t)
-    reference = Reference(Case(0, np.zeros(2)), t, np.zeros((11, 2)), np.zeros((11, 3)), falling, 1.0)
+    reference = ReferenceSolution(Case(0, np.zeros(2)), t, np.zeros((11, 2)), np.zeros((11, 3)), falling, 1.0)
     damped = structure.model_copy(update={"damping_out_of_plane_s": 0.1})
     assert energy_error_percent(damped, reference, falling, 0.0) == 0.0
     assert energy_error_percent(damped, reference, np.full(11, 8.0), 0.0) == pytest.approx(63.2, abs=0.1)

@@ -40,7 +40,7 @@ LIMITS = load_feature_limits(Path(__file__).resolve().parents[2] / "config/aircr
 
 
 @pytest.fixture(scope="module")
-def plane(gnba_modes):
+def airliner(gnba_modes):
     settings = FlightSettings(
         duration_s=1.0, random_flights=RandomFlights(of_each_doublet=1, rebuild_flights=1)
     )
@@ -55,8 +55,8 @@ def surrogate(gnba_derivatives):
 
 
 @pytest.fixture(scope="module")
-def trims(plane, gnba_derivatives, surrogate):
-    return [trim(plane.flying(mapping), CRUISE) for mapping in (gnba_derivatives, surrogate)]
+def trims(airliner, gnba_derivatives, surrogate):
+    return [trim(airliner.flying(mapping), CRUISE) for mapping in (gnba_derivatives, surrogate)]
 
 
 def anywhere(condition: FlightCondition) -> bool:
@@ -90,8 +90,8 @@ def test_conditions_without_a_trim_are_drawn_anew():
         random_flights(timid, LIMITS, anywhere)
 
 
-def test_a_flight_is_its_own_reference_and_errors_are_in_percent_of_the_peak(plane, trims):
-    exact, found = (flown(start, Flight(0, "elevator", CRUISE, 3.0), plane.settings) for start in trims)
+def test_a_flight_is_its_own_reference_and_errors_are_in_percent_of_the_peak(airliner, trims):
+    exact, found = (flown(start, Flight(0, "elevator", CRUISE, 3.0), airliner.settings) for start in trims)
     assert set(peak_errors(exact, exact, MOVED["elevator"]).values()) == {0.0}
     errors = peak_errors(exact, found, MOVED["elevator"])
     q = np.degrees(exact.x[:, 10])
@@ -103,15 +103,15 @@ def test_a_flight_is_its_own_reference_and_errors_are_in_percent_of_the_peak(pla
     assert outputs(exact)["airspeed_m_s"][0] == pytest.approx(np.linalg.norm(exact.x[0, 6:9]))
 
 
-def test_states_beyond_the_limits_of_training_are_counted_for_each_input(plane, trims):
+def test_states_beyond_the_limits_of_training_are_counted_for_each_input(airliner, trims):
     start = trims[0]
     flight = Flight(7, "elevator", CRUISE, 3.0)
-    run = flown(start, flight, plane.settings)
+    run = flown(start, flight, airliner.settings)
     low, high = np.full(25, -1e6), np.full(25, 1e6)
-    nowhere = limit_exceedances(start, flight, run, plane.settings, low, high)
+    nowhere = limit_exceedances(start, flight, run, airliner.settings, low, high)
     assert nowhere["outside"].sum() == 0
     high[8] = np.radians(2.0)  # the left elevator's, which reaches 3 degrees
-    frame = limit_exceedances(start, flight, run, plane.settings, low, high).set_index("input")
+    frame = limit_exceedances(start, flight, run, airliner.settings, low, high).set_index("input")
     assert frame.loc["delta_e_left", "outside"] == np.count_nonzero((run.t >= 0.5) & (run.t < 1.5))
     assert frame["outside"].sum() == frame.loc["delta_e_left", "outside"]
     summary = exceedance_summary(frame.reset_index()).set_index("input")
@@ -132,13 +132,13 @@ def test_modes_of_two_aerodynamics_are_matched_by_name(trims):
     assert 0.1 < exact["error_percent"] < 5.0
 
 
-def test_modes_left_out_of_the_aerodynamics_gain_damping_where_it_knows_them(plane):
-    frame = left_out_modes(plane).set_index("mode")
+def test_modes_left_out_of_the_aerodynamics_gain_damping_where_it_knows_them(airliner):
+    frame = left_out_modes(airliner).set_index("mode")
     assert set(frame.index) == {
         *("short period", "phugoid", "dutch roll", "roll", "spiral"),
         *(f"elastic {k}" for k in range(1, 7)),
     }
-    omega = plane.modes.omega_rad_s
+    omega = airliner.modes.omega_rad_s
     for k in (3, 4):
         row = frame.loc[f"elastic {k}"]
         assert row["without_real"] == pytest.approx(-0.02 * omega[k - 1], rel=1e-5)
@@ -146,15 +146,15 @@ def test_modes_left_out_of_the_aerodynamics_gain_damping_where_it_knows_them(pla
     assert frame.loc["short period", "change_percent"] < 5.0
 
 
-def test_costs_are_relative_to_each_lattice_over_the_flights_both_flew(plane, gnba_derivatives, surrogate):
+def test_costs_are_relative_to_each_lattice_over_the_flights_both_flew(airliner, gnba_derivatives, surrogate):
     forms = {
         "vlm_rebuild": gnba_derivatives,
         REFERENCE: gnba_derivatives,
         "network": lambda condition: surrogate,
     }
     limits = (np.full(25, -1e6), np.full(25, 1e6))
-    drawn = random_flights(plane.settings, LIMITS, lambda condition: condition.mach > 0.65)
-    flights, left = fly_all(plane, forms, drawn, limits, in_torch=surrogate)
+    drawn = random_flights(airliner.settings, LIMITS, lambda condition: condition.mach > 0.65)
+    flights, left = fly_all(airliner, forms, drawn, limits, in_torch=surrogate)
     number = {REFERENCE: 3, "network": 3, TORCH: 3, "vlm_rebuild": 1}
     assert flights["model"].value_counts().to_dict() == number
     assert flights["completed"].all()
@@ -185,14 +185,14 @@ def test_costs_are_relative_to_each_lattice_over_the_flights_both_flew(plane, gn
     assert cost.loc["vlm_rebuild", "worst_error_percent"] == 0.0  # the same aerodynamics as the reference
 
 
-def test_a_flight_without_a_trim_is_left_out(plane, gnba_derivatives):
+def test_a_flight_without_a_trim_is_left_out(airliner, gnba_derivatives):
     nowhere = Flight(0, "rudder", FlightCondition(mach=0.3, altitude_m=11000.0), 2.0)
-    flights, _ = fly_all(plane, {REFERENCE: gnba_derivatives}, [nowhere])
+    flights, _ = fly_all(airliner, {REFERENCE: gnba_derivatives}, [nowhere])
     assert flights.empty
 
 
-def test_elastic_modes_are_named_by_what_moves_and_numbered_as_in_the_paper(plane):
-    frame = elastic_modes(plane).set_index("mode")
+def test_elastic_modes_are_named_by_what_moves_and_numbered_as_in_the_paper(airliner):
+    frame = elastic_modes(airliner).set_index("mode")
     assert frame.loc[1, "name"] == "symmetric wing bending"
     assert frame.loc[3, "name"] == "symmetric engine nodding"
     assert frame.loc[4, "name"] == "antisymmetric lateral fuselage bending"
@@ -201,23 +201,23 @@ def test_elastic_modes_are_named_by_what_moves_and_numbered_as_in_the_paper(plan
     of_the_paper = frame["paper_mode"].dropna()
     assert of_the_paper.to_dict() == {1: 1, 2: 2, 5: 6, 6: 5, 7: 8, 8: 7}
     assert set(of_the_paper[frame["symmetric"]]) == {1, 6, 7}
-    other = replace(plane, settings=plane.settings.model_copy(update={"aerodynamic_modes": (1, 2, 5)}))
+    other = replace(airliner, settings=airliner.settings.model_copy(update={"aerodynamic_modes": (1, 2, 5)}))
     assert elastic_modes(other)["paper_mode"].isna().all()
 
 
-def test_figures_are_drawn(plane, trims, tmp_path):
+def test_figures_are_drawn(airliner, trims, tmp_path):
     histories = []
     for control in ("elevator", "aileron", "rudder"):
         for name, start in zip((REFERENCE, "network"), trims, strict=True):
-            run = flown(start, Flight(0, control, CRUISE, 3.0), plane.settings)
+            run = flown(start, Flight(0, control, CRUISE, 3.0), airliner.settings)
             histories.append(pd.DataFrame({"model": name, "control": control, "t_s": run.t, **outputs(run)}))
     shown = {
-        "free_modes": plane.modes,
-        "lattice": plane.airframe.lattice,
-        "doublet": plane.settings.doublet,
+        "free_modes": airliner.modes,
+        "lattice": airliner.airframe.lattice,
+        "doublet": airliner.settings.doublet,
         "modes": airliner_modes(*trims),
         "doublets": pd.concat(histories),
-        "elastic_modes": elastic_modes(plane),
+        "elastic_modes": elastic_modes(airliner),
     }
     figures = {
         name: DRAW[name](*(shown[read] for read in product.reads))

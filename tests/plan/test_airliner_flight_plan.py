@@ -14,13 +14,13 @@ def test_a_job_is_plain_data_from_which_the_airliner_comes_back():
     plan = Plan(load(ROOT, ["config/config.yaml"]))
     study = plan.studies["airliner"].resolved
     job = json.loads(json.dumps(plan.studies["airliner"].fly()))
-    plane = airliner_of(job)
-    assert plane.settings == study.study.flight
-    assert plane.limits == study.limits
-    assert plane.modes.model.aircraft == study.aircraft
+    airliner = airliner_of(job)
+    assert airliner.settings == study.study.flight
+    assert airliner.limits == study.limits
+    assert airliner.modes.model.aircraft == study.aircraft
     panels = study.study.dataset.panels
     assert (
-        len(plane.airframe.lattice)
+        len(airliner.airframe.lattice)
         == 2 * (panels.wing[0] * panels.wing[1] + panels.horizontal_tail[0] * panels.horizontal_tail[1])
         + panels.vertical_tail[0] * panels.vertical_tail[1]
     )

@@ -22,7 +22,7 @@ from flexsurr.tracking.page import Page
 from flexsurr.tracking.recording import end_sweeps, record
 from flexsurr.tracking.run_files import UNLOGGED, RunFiles
 from flexsurr.tracking.store import Store, create_store, database, read_store, store_uri, write_store
-from flexsurr.tracking.trial import Trial
+from flexsurr.tracking.trial import TrackedRun
 
 PARENT = "mlflow.parentRunId"
 SYSTEM = "system/"
@@ -42,7 +42,7 @@ def run_of(store: Store, key: str, study: str = "cantilever"):
 
 
 @contextmanager
-def tracked(store: Store | None, study: str, key: str, runs: Path) -> Iterator[Trial]:
+def tracked(store: Store | None, study: str, key: str, runs: Path) -> Iterator[TrackedRun]:
     """A trial whose files are all there from the start."""
     folder = write_run(runs, key, study)
     with trials.tracked(store, described(key, study), folder) as trial:
