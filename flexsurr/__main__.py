@@ -8,10 +8,10 @@ from flexsurr.cli.index import FOR_PEOPLE, function_of, purpose, purposes
 
 EXIT_CODES = """exit codes
   0    done
-  1    it cannot be done: one line says why (a traceback is a mistake of ours: please report it)
-  2    called wrongly: an unknown command, option or file
+  1    it cannot be done: one line says why (a traceback is a bug of flexsurr: please report it)
+  2    wrong call: an unknown command, option or file
   130  interrupted (Ctrl-C)
-  143  told to end (SIGTERM); what was open is closed"""
+  143  terminated (SIGTERM); open files are closed"""
 
 
 def main() -> None:
@@ -46,12 +46,12 @@ def overview() -> str:
     )
     return "\n".join(
         [
-            "usage: flexsurr <command> [options]     flexsurr <command> --help says which",
+            "usage: flexsurr <command> [options]     flexsurr <command> --help lists its options",
             "",
             "for you",
             *of_people,
             "",
-            "for the workflow (snakemake calls them, with a --job FILE that it writes below results/jobs)",
+            "for the workflow (snakemake calls them with --job, a file that it writes below results/jobs)",
             *of_rules,
             "",
             EXIT_CODES,

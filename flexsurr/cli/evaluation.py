@@ -38,7 +38,7 @@ FRAMES = 150
     shapes="shapes",
 )
 def statics(job: Job, statics: Path, frequencies: Path, shapes: Path) -> None:
-    """Static deflection under dead loads, natural frequencies, and shapes (Fig. 8, Table 3)."""
+    """Compute static deflection under dead loads, natural frequencies and shapes (Fig. 8, Table 3)."""
     study, basis = _reduced(job)
     others = [Structure.model_validate(values) for values in job["frequencies_also_of"]]
     bases = [basis, *(reduce(structure, study.reduction) for structure in others)]
@@ -49,7 +49,7 @@ def statics(job: Job, statics: Path, frequencies: Path, shapes: Path) -> None:
 
 @for_rules(EquilibriumNotFound, output="the responses")
 def validate(job: Job, output: Path) -> None:
-    """Full and reduced order side by side under the study's tip force, both variants (Fig. 9)."""
+    """Simulate full and reduced order under the study's load, in both variants (Fig. 9)."""
     write_frame(output, validation_table(*_reduced(job)))
 
 
@@ -65,7 +65,7 @@ def validate(job: Job, output: Path) -> None:
 def respond(
     job: Job, selection: Path, runs: Path, free: Path, forced: Path, sustained: Path, energy: Path
 ) -> None:
-    """Responses of the selected surrogates beside the reference's; their energies (Figs. 10, 12 to 15)."""
+    """Simulate the selected surrogates beside the reference, with their energies (Figs. 10, 12 to 15)."""
     study, basis = _reduced(job)
     surrogates = selected_surrogates(selection, job["variant"], runs)
     responses: dict[Response, Path] = {"free": free, "forced": forced, "sustained": sustained}
@@ -83,7 +83,7 @@ def respond(
     errors="the held-out errors",
 )
 def learn_load(job: Job, manifest: Path, polynomial: Path, network: Path, errors: Path) -> None:
-    """Learn the generalised forces of a study's load, and say what they err by.
+    """Learn the generalised forces of a study's load, and tabulate their errors.
 
     They are learned from the training trajectories, and held against the others.
     """
@@ -102,7 +102,7 @@ def learn_load(job: Job, manifest: Path, polynomial: Path, network: Path, errors
 
 @for_rules(EquilibriumNotFound, ArithmeticError, **SELECTED, loads="learned loads", output="the cost table")
 def evaluate(job: Job, selection: Path, runs: Path, loads: list[Path], output: Path) -> None:
-    """Time and judge every model, implementation and integrator under one response; alone on the machine.
+    """Measure time and error of every model, implementation and integrator; alone on the machine.
 
     `loads` are maps to generalised forces, under which the most accurate surrogate stands in the table once
     more; the name of the file is added to its own.

@@ -66,7 +66,7 @@ def _export_arguments(parser: argparse.ArgumentParser) -> None:
 
 @for_people(_export_arguments, SurrogateFileError, OSError, NotExported, EquilibriumNotFound, TrimNotFound)
 def export(run: str, to: str, aircraft: str | None, name: str | None, output: Path | None) -> None:
-    """Export a surrogate: a C header, a NumPy file, ONNX, or an FMU for Simulink, OpenModelica or a rig.
+    """Export a surrogate as a C header, a NumPy file, ONNX, or an FMU for Simulink or OpenModelica.
 
     Raises SurrogateFileError and OSError for a file that is no surrogate, NotExported for one that has no
     such form, TrimNotFound for an aircraft that has no trim with it.

@@ -92,7 +92,7 @@ def _network(path: Path) -> NetworkMap:
     errors="one row a held-out sample",
 )
 def accuracy(job: Job, selection: Path, runs: Path, datasets: Path, accuracy: Path, errors: Path) -> None:
-    """What the selected maps err by, output by output, and where the network's errors lie.
+    """Tabulate the errors of the selected maps, by output, and the network's errors sample by sample.
 
     The errors are those on the held-out samples. Where no map, or no network, has finished there are columns
     alone.
@@ -136,7 +136,7 @@ def fly(
     doublets: Path,
     trims: Path,
 ) -> None:
-    """Trim the airliner, linearise, and fly the three doublets, with the lattice and with the network.
+    """Trim the airliner, linearise, and fly three doublets, with the lattice and with the network.
 
     Trims are found over the whole envelope, modes and doublets at the study's own condition.
     """
@@ -205,7 +205,7 @@ def fly_randomly(
     rows: Path,
     limits: Path,
 ) -> None:
-    """Time random flights of the airliner with each form of its aerodynamics, and count what left the limits.
+    """Time random flights with each form of the aerodynamics; count inputs beyond the limits.
 
     `flights` and `exceedances` have all of them, the others their summaries.
     """

@@ -19,7 +19,7 @@ from flexsurr.storage.frames import read_frame, read_text_frame, write_frame
 
 @for_rules(results="the folder of all results", folder="of the figures")
 def draw(job: Job, results: Path, folder: Path) -> None:
-    """Draw figures of a study: those that show what one rule has made.
+    """Draw the figures of a study that show what one rule has made.
 
     Each is an SVG and a PNG.
     """
@@ -48,7 +48,7 @@ def _of_aircraft(flight: Job) -> dict[str, Any]:
 
 @for_rules(results="the folder of all results", captions="what to see in them", folder="of the tables")
 def tabulate(job: Job, results: Path, captions: list[Path], folder: Path) -> None:
-    """Write tables of a study, each as a file for programs and as a page for people.
+    """Write tables of a study, each as a CSV file and as a page.
 
     `captions` are named as the tables.
     """
@@ -89,7 +89,7 @@ def _read(read: str, job: Job, files: Sequence[Path]) -> Any:
 
 @for_rules(inputs="the tables of each study", folder="where all of them go")
 def join(job: Job, inputs: list[Path], folder: Path) -> None:
-    """Put the tables of all studies below one another.
+    """Join the tables of all studies, one below another.
 
     Those of `inputs` that have one name become one table of that name, to the letter.
     """

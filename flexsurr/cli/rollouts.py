@@ -13,7 +13,7 @@ from flexsurr.storage.frames import write_frame
 
 @for_rules(**SELECTED, manifest="of the dataset", table="the errors", curves="states against time")
 def rollouts(job: Job, selection: Path, runs: Path, manifest: Path, table: Path, curves: Path) -> None:
-    """Let the selected surrogates follow the held-out trajectories of a study of the user's files.
+    """Simulate the selected surrogates along held-out trajectories of the user's files.
 
     `table` has the errors of every rollout, `curves` the first few of them.
     """
@@ -28,7 +28,7 @@ def rollouts(job: Job, selection: Path, runs: Path, manifest: Path, table: Path,
 
 @for_rules(**SELECTED, manifest="of the dataset", output="the cost table")
 def rollout_cost(job: Job, selection: Path, runs: Path, manifest: Path, output: Path) -> None:
-    """Time the selected surrogates on held-out trajectories of the user's files; alone on the machine.
+    """Time the selected surrogates along the same trajectories; alone on the machine.
 
     A row is a right-hand side, or a rollout, of one surrogate.
     """

@@ -62,7 +62,7 @@ def sample(job: Job, output: Path) -> None:
 
 @for_rules(results="the folder of results", output="what is made")
 def sample_shards(job: Job, results: Path, output: Path) -> None:
-    """Sample many shards of the airliner's aerodynamics, one after another: those that are not there.
+    """Sample a batch of shards of the airliner's aerodynamics: those that are missing or out of date.
 
     They lie below `results`; `output` lists them.
     """

@@ -99,7 +99,7 @@ def _beside_recordings(job: Job, manifest: Path) -> Errors:
     output="its metrics",
 )
 def score_map(job: Job, fit: Path, weights: Path, best: Path, manifest: list[Path], output: Path) -> None:
-    """Score one run of a map: what training says of it on held-out samples is all.
+    """Score one run of a map: by its errors on held-out samples, which training has written.
 
     There is no `manifest` of a map; rule `accuracy` reads its weights.
     """
@@ -113,7 +113,7 @@ SAYS_WHY = "table sweeps.csv says why"
 
 @for_rules(runs="the folder of all runs", output="the selection")
 def select(job: Job, runs: Path, output: Path) -> None:
-    """Choose the surrogates of a study that are evaluated.
+    """Select the surrogates of a study that are evaluated.
 
     It follows from the metrics of the runs below `runs`. The best surrogate of the sweep `default` goes by
     the name of its architecture (`hnn`), that of another sweep has the sweep's name added (`hnn_paper`). Of a

@@ -40,7 +40,7 @@ def _check_arguments(parser: argparse.ArgumentParser) -> None:
 
 @for_people(_check_arguments)
 def check(configfile: list[str], directory: Path) -> None:
-    """Check the configuration as snakemake would, and say what it would make.
+    """Check the configuration as snakemake does, and say what it would make.
 
     Prints a line for each study, and on stderr what looks odd of its structure. Raises ConfigurationError
     with a line for each mistake.
@@ -130,7 +130,7 @@ def _new_study_arguments(parser: argparse.ArgumentParser) -> None:
 
 @for_people(_new_study_arguments, ValueError, EquilibriumNotFound)
 def new_study(name: str, directory: Path, modes: int | None, damping: float, **given: Any) -> None:
-    """Begin a study of a beam of your own: write its structure, sweep and study, with comments, ready to run.
+    """Begin a study of your own beam: write its structure, sweep and study, ready to run.
 
     ValueError for what makes no beam, or exists already.
     """
@@ -239,7 +239,7 @@ def _reference_arguments(parser: argparse.ArgumentParser) -> None:
 
 @for_people(_reference_arguments)
 def reference(output: Path | None) -> None:
-    """Every key that a configuration may hold, with meaning, unit, default and what is allowed, as Markdown.
+    """Print every key of a configuration as Markdown: meaning, unit, default, allowed values.
 
     Raises LookupError for a key without a description.
     """

@@ -24,7 +24,7 @@ def _surrogate_arguments(parser: argparse.ArgumentParser) -> None:
 
 @for_people(_surrogate_arguments, SurrogateFileError, OSError)
 def surrogate(file: Path) -> None:
-    """Say what a saved surrogate is: what it stands for, its states, and where it was trained.
+    """Describe a saved surrogate: the structure, the states, and the ranges of its training.
 
     Raises SurrogateFileError for a damaged or foreign file, OSError where there is none.
     """

@@ -23,7 +23,7 @@ log = logging.getLogger(__name__)
 
 @for_rules(output="the address of the store and what is in it")
 def store(job: Job, output: Path) -> None:
-    """Create the tracking store, once and before anything writes to it.
+    """Create the tracking store, before anything writes to it.
 
     It lies beside `output`, which says how to reach it. A store that cannot be reached is a warning: its
     address alone is written, and results are made without it. So is a folder that cannot be written to, of
@@ -59,7 +59,7 @@ def _track_arguments(parser: argparse.ArgumentParser) -> None:
 
 @for_people(_track_arguments)
 def track(results: Path, sync: bool, uri: str | None) -> None:
-    """Bring the page of runs up to date with the files of the results, and say what it lacks.
+    """Bring the MLflow page of runs up to date with the results, and say what it lacks.
 
     Logs scores, figures and champions that the page lacks, and with `sync` whole runs.
 

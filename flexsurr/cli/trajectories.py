@@ -74,7 +74,7 @@ def simulate(job: Job, output: Path) -> None:
 
 @for_rules(results="the folder of results", output="what is made")
 def shards(job: Job, results: Path, output: Path) -> None:
-    """Simulate many shards of a dataset, one after another: those of a batch that are not there.
+    """Simulate a batch of shards of a dataset: those that are missing or out of date.
 
     They lie below `results`; `output` lists them.
     """

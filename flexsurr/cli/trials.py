@@ -17,7 +17,7 @@ BATCH = {
 
 @for_rules(**BATCH)
 def trials(job: Job, results: Path, store: Path, output: Path) -> None:
-    """Train and score many surrogates of fields, one after another: those of a batch that are not there.
+    """Train and score a batch of surrogates of fields: those that are missing or out of date.
 
     Their folders lie below `results`; `output` lists what is in them.
     """
@@ -27,7 +27,7 @@ def trials(job: Job, results: Path, store: Path, output: Path) -> None:
 
 @for_rules(**BATCH)
 def map_trials(job: Job, results: Path, store: Path, output: Path) -> None:
-    """Train and score many surrogates of maps, one after another: those of a batch that are not there.
+    """Train and score a batch of surrogates of maps: those that are missing or out of date.
 
     Their folders lie below `results`; `output` lists what is in them.
     """
