@@ -13,8 +13,8 @@ from flexsurr.cli.runs import SELECTED, most_accurate, selected_runs, selected_s
 from flexsurr.config.schema import part_of
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Study
+from flexsurr.evaluation.candidates import with_learned_loads
 from flexsurr.evaluation.cases import Response, evaluation_cases
-from flexsurr.evaluation.contenders import with_learned_loads
 from flexsurr.evaluation.cost import cost_table
 from flexsurr.evaluation.energy import energy_table
 from flexsurr.evaluation.learned_loads import learn_forces, learned_load_table

@@ -13,6 +13,7 @@ import pandas as pd
 from flexsurr.beam import ModalBasis, reduced_order
 from flexsurr.config.study import EvaluationSettings, Integrator, Study, Variant
 from flexsurr.evaluation.accuracy import tip_error
+from flexsurr.evaluation.candidates import Candidate, candidates
 from flexsurr.evaluation.cases import (
     ReferenceSolution,
     Response,
@@ -23,7 +24,6 @@ from flexsurr.evaluation.cases import (
     tip_motion,
 )
 from flexsurr.evaluation.columns import COST_COLUMNS
-from flexsurr.evaluation.contenders import Contender, contenders
 from flexsurr.evaluation.energy import drift_percent, energy_error_percent
 from flexsurr.evaluation.published import beside
 from flexsurr.evaluation.ratios import PAPERS_INTEGRATOR, summary
@@ -45,16 +45,16 @@ ENOUGH_S = 0.1
 class Setup:
     """One row of the table to be: a model in one implementation, with one integrator."""
 
-    contender: Contender
+    candidate: Candidate
     integrator: Integrator
 
     def __str__(self) -> str:
         """As the log has it."""
-        return " ".join((self.contender.model, self.contender.implementation, self.integrator.label))
+        return " ".join((self.candidate.model, self.candidate.implementation, self.integrator.label))
 
     def simulations(self, settings: EvaluationSettings, variant: Variant) -> int:
         """How many of the study's simulations this row runs."""
-        if self.contender.implementation == "described":
+        if self.candidate.implementation == "described":
             return min(settings.described_simulations.of(variant), settings.simulations)
         if self._runs_in_python:
             return min(settings.scipy_simulations, settings.simulations)
@@ -66,7 +66,7 @@ class Setup:
 
     @property
     def _runs_in_python(self) -> bool:
-        return self.contender.implementation == "torch" or self.integrator.method.startswith(STEPS_IN_PYTHON)
+        return self.candidate.implementation == "torch" or self.integrator.method.startswith(STEPS_IN_PYTHON)
 
 
 def cost_table(
@@ -76,13 +76,13 @@ def cost_table(
     variant: Variant,
     response: Response,
     surrogates: Mapping[str, Any],
-    learned: Iterable[Contender] = (),
+    learned: Iterable[Candidate] = (),
     recipes: Mapping[str, str] = MappingProxyType({}),
 ) -> pd.DataFrame:
     """The rows of cost.csv for one variant and response: `measurements`, summarised by `ratios.summary`.
 
     `surrogates` maps architectures to fitted surrogates; `learned` are those under learned loads
-    (`contenders.with_learned_loads`); `recipes` is as in `published.beside`. Run it alone on the machine.
+    (`candidates.with_learned_loads`); `recipes` is as in `published.beside`. Run it alone on the machine.
     """
     frame = summary(measurements(study, basis, variant, response, surrogates, learned))
     frame.insert(0, "study", study_name)
@@ -92,13 +92,13 @@ def cost_table(
     return frame[[*COST_COLUMNS, *frame.columns.difference(list(COST_COLUMNS), sort=False)]]
 
 
-def setups(models: Iterable[Contender], integrators: Iterable[Integrator]) -> Iterator[Setup]:
+def setups(models: Iterable[Candidate], integrators: Iterable[Integrator]) -> Iterator[Setup]:
     """Every model with the paper's integrator; those with a kernel also with each of `integrators`."""
     compiled_too = [integrator for integrator in integrators if integrator != PAPERS_INTEGRATOR]
-    for contender in models:
-        yield Setup(contender, PAPERS_INTEGRATOR)
-        if contender.steppable:
-            yield from (Setup(contender, integrator) for integrator in compiled_too)
+    for candidate in models:
+        yield Setup(candidate, PAPERS_INTEGRATOR)
+        if candidate.steppable:
+            yield from (Setup(candidate, integrator) for integrator in compiled_too)
 
 
 def measurements(
@@ -107,7 +107,7 @@ def measurements(
     variant: Variant,
     response: Response,
     surrogates: Mapping[str, Any],
-    learned: Iterable[Contender] = (),
+    learned: Iterable[Candidate] = (),
 ) -> pd.DataFrame:
     """One row per simulation of every model × implementation × integrator.
 
@@ -125,10 +125,10 @@ def measurements(
     # before torch is there: its threads would not survive a fork
     compile_ahead(
         partial(_first_steps, setup, basis, references[0])
-        for setup in setups([*contenders(basis, variant, surrogates), *learned], settings.integrators)
-        if setup.contender.steppable
+        for setup in setups([*candidates(basis, variant, surrogates), *learned], settings.integrators)
+        if setup.candidate.steppable
     )
-    models = [*contenders(basis, variant, surrogates, with_torch=True), *learned]
+    models = [*candidates(basis, variant, surrogates, with_torch=True), *learned]
     timed: list[Timed] = []
     with measuring():
         for setup in setups(models, settings.integrators):
@@ -173,7 +173,7 @@ class Timed:
 
 
 def _timed(setup: Setup, basis: ModalBasis, reference: ReferenceSolution, repeats: int) -> Timed:
-    model = setup.contender.under(basis, reference.case)
+    model = setup.candidate.under(basis, reference.case)
     _first_steps(setup, basis, reference)
     trajectory, wall_s = wall_time(
         partial(_run, model, reference.t, reference.case.x0, setup.integrator), repeats, ENOUGH_S
@@ -185,12 +185,12 @@ def _measured(basis: ModalBasis, variant: Variant, timed: Timed) -> dict[str, An
     """The row of one simulation."""
     setup, reference, trajectory = timed.setup, timed.reference, timed.trajectory
     exact = reduced_order(basis, variant, "numpy")
-    own = setup.contender.energy(trajectory.x)
+    own = setup.candidate.energy(trajectory.x)
     error = tip_error(reference, tip_motion(exact, trajectory.x))
     free_from_s = reference.case.free_from_s
     return {
-        "model": setup.contender.model,
-        "implementation": setup.contender.implementation,
+        "model": setup.candidate.model,
+        "implementation": setup.candidate.implementation,
         "integrator": setup.integrator.label,
         "simulation": reference.case.number,
         "wall_s": timed.wall_s,
@@ -211,7 +211,7 @@ def _measured(basis: ModalBasis, variant: Variant, timed: Timed) -> dict[str, An
 
 def _first_steps(setup: Setup, basis: ModalBasis, reference: ReferenceSolution) -> None:
     """They load or compile what the timed ones use."""
-    model = setup.contender.under(basis, reference.case)
+    model = setup.candidate.under(basis, reference.case)
     _run(model, reference.t[:2], reference.case.x0, setup.integrator)
 
 

@@ -14,6 +14,7 @@ from scipy.integrate import cumulative_simpson
 from flexsurr.beam import BeamModel, Load, ModalBasis, loaded
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Integrator, Study, Variant
+from flexsurr.evaluation.candidates import Candidate, candidates
 from flexsurr.evaluation.cases import (
     DRAWN_EVERY_S,
     ReferenceSolution,
@@ -23,7 +24,6 @@ from flexsurr.evaluation.cases import (
     reference_solution,
     sample_times,
 )
-from flexsurr.evaluation.contenders import Contender, contenders
 from flexsurr.simulation import simulate
 from flexsurr.simulation.rhs import Array
 
@@ -92,7 +92,7 @@ def energy_table(
     elsewhere. A trajectory that ends early ends its rows.
     """
     settings = study.evaluation
-    compiled = [c for c in contenders(basis, variant, surrogates) if c.steppable]
+    compiled = [c for c in candidates(basis, variant, surrogates) if c.steppable]
     exact = [c for c in compiled if c.model == "rom"]
     integrators = (*settings.integrators, *SCIPY_DEFAULTS)
     fine = sample_times(settings.duration_s, min(settings.output_step_s, DRAWN_EVERY_S))
@@ -101,15 +101,15 @@ def energy_table(
     frames = []
     for response in RESPONSES:
         case = evaluation_cases(basis, study, response)[0]
-        setups = [("models", fine, contender, settings.energy_integrator) for contender in compiled]
+        setups = [("models", fine, candidate, settings.energy_integrator) for candidate in compiled]
         if response == "free" and not basis.structure.dissipates:
             setups += [("integrators", coarse, exact[0], integrator) for integrator in integrators]
         references = {
             t.size: reference_solution(basis, variant, case, t, settings.reference_integrator)
             for t in (fine, coarse)
         }
-        for panel, t, contender, integrator in setups:
-            frame = _energy(basis, variant, references[t.size], contender, integrator)
+        for panel, t, candidate, integrator in setups:
+            frame = _energy(basis, variant, references[t.size], candidate, integrator)
             frames.append(frame.assign(panel=panel, response=response, load_end_s=case.free_from_s))
     return pd.concat(frames, ignore_index=True)[list(ENERGY_COLUMNS)]
 
@@ -118,17 +118,17 @@ def _energy(
     basis: ModalBasis,
     variant: Variant,
     reference: ReferenceSolution,
-    contender: Contender,
+    candidate: Candidate,
     integrator: Integrator,
 ) -> pd.DataFrame:
     case = reference.case
-    trajectory = simulate(contender.under(basis, case), reference.t, case.x0, integrator)
+    trajectory = simulate(candidate.under(basis, case), reference.t, case.x0, integrator)
     energy = energy_above_rest(basis, variant, trajectory.x)
     conserves = case.load is None and not basis.structure.dissipates
     return pd.DataFrame(
         {
             "variant": variant,
-            "model": contender.model,
+            "model": candidate.model,
             "integrator": integrator.label,
             "t_s": trajectory.t,
             "energy_J": energy,

@@ -9,6 +9,7 @@ import pandas as pd
 from flexsurr.beam import BeamModel, ModalBasis, find_equilibrium, full_order, loaded, reduced_order
 from flexsurr.config.study import Study, Variant
 from flexsurr.evaluation.accuracy import tip_error_percent
+from flexsurr.evaluation.candidates import candidates
 from flexsurr.evaluation.cases import (
     DRAWN_EVERY_S,
     ReferenceSolution,
@@ -20,7 +21,6 @@ from flexsurr.evaluation.cases import (
     sample_times,
     tip_motion,
 )
-from flexsurr.evaluation.contenders import contenders
 from flexsurr.simulation import simulate
 from flexsurr.simulation.rhs import Array
 
@@ -53,10 +53,10 @@ def response_table(
     reference = reference_solution(basis, variant, case, t, settings.reference_integrator)
     exact = reduced_order(basis, variant, "numpy")
     states = {"reference": reference.x}
-    for contender in contenders(basis, variant, surrogates):
-        if contender.steppable and contender.model != "rom":
-            model = contender.under(basis, case)
-            states[contender.model] = simulate(model, t, case.x0, settings.drawing_integrator).x
+    for candidate in candidates(basis, variant, surrogates):
+        if candidate.steppable and candidate.model != "rom":
+            model = candidate.under(basis, case)
+            states[candidate.model] = simulate(model, t, case.x0, settings.drawing_integrator).x
     frames = [_frame(variant, response, model, reference, exact, x) for model, x in states.items()]
     return pd.concat(frames, ignore_index=True)
 

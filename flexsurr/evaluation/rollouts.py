@@ -15,7 +15,7 @@ import numpy as np
 import pandas as pd
 
 from flexsurr.config.study import Integrator
-from flexsurr.evaluation.contenders import surrogate_contenders
+from flexsurr.evaluation.candidates import surrogate_candidates
 from flexsurr.evaluation.cost import setups
 from flexsurr.evaluation.timing import measuring, wall_time
 from flexsurr.simulation import Trajectory, simulate
@@ -174,9 +174,9 @@ def rollout_cost(
     """
     rows = []
     with measuring():
-        for setup in setups(surrogate_contenders(surrogates, with_torch=True), [integrator]):
-            model, timed = setup.contender.field, []
-            in_python = setup.contender.implementation != "compiled"
+        for setup in setups(surrogate_candidates(surrogates, with_torch=True), [integrator]):
+            model, timed = setup.candidate.field, []
+            in_python = setup.candidate.implementation != "compiled"
             for recorded in held_out.trajectories:
                 # the first steps load or compile what the timed ones use
                 recorded.followed_by(model, recorded.t[:2], setup.integrator)
@@ -187,8 +187,8 @@ def rollout_cost(
                     timed.append((trajectory.t[-1] - trajectory.t[0], trajectory.evaluations, wall_s, error))
             rows.append(
                 {
-                    "model": setup.contender.model,
-                    "implementation": setup.contender.implementation,
+                    "model": setup.candidate.model,
+                    "implementation": setup.candidate.implementation,
                     "integrator": setup.integrator.label,
                     **_summary(np.array(timed).reshape(-1, 4)),
                     "simulations": len(held_out.trajectories),

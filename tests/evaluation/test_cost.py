@@ -4,8 +4,8 @@ import logging
 
 import pytest
 
+from flexsurr.evaluation.candidates import candidates
 from flexsurr.evaluation.columns import COST_COLUMNS
-from flexsurr.evaluation.contenders import contenders
 from flexsurr.evaluation.cost import cost_table, setups
 from flexsurr.evaluation.ratios import PAPERS_INTEGRATOR
 
@@ -83,7 +83,7 @@ def test_a_person_who_watches_sees_each_row(study, basis, caplog):
 def test_the_papers_integrator_is_not_run_twice(study, basis):
     integrators = (*study.evaluation.integrators, PAPERS_INTEGRATOR)
     listed = [
-        (s.contender.implementation, s.integrator.label)
-        for s in setups(contenders(basis, "hamiltonian", {}), integrators)
+        (s.candidate.implementation, s.integrator.label)
+        for s in setups(candidates(basis, "hamiltonian", {}), integrators)
     ]
     assert len(listed) == len(set(listed))

@@ -13,8 +13,8 @@ from flexsurr.config.study import (
     LearnedLoadSettings,
     Reduction,
 )
+from flexsurr.evaluation.candidates import with_learned_loads
 from flexsurr.evaluation.cases import evaluation_cases
-from flexsurr.evaluation.contenders import with_learned_loads
 from flexsurr.evaluation.cost import cost_table
 from flexsurr.evaluation.learned_loads import (
     exact_forces,
@@ -135,22 +135,22 @@ def test_a_surrogate_under_it_follows_the_one_under_the_exact_load(study, basis,
     eta = np.linspace(-0.8, 0.8, 400)[:, None]
     learned = learn_forces(basis, study.evaluation, eta, eta[::7])
     maps = {"learned_load": learned.polynomial, "network_load": learned.network}
-    contenders = with_learned_loads("polynomial", fitted, maps)
-    assert [contender.model for contender in contenders] == [
+    candidates = with_learned_loads("polynomial", fitted, maps)
+    assert [candidate.model for candidate in candidates] == [
         "polynomial_learned_load",
         "polynomial_network_load",
     ]
     case = evaluation_cases(basis, study, "forced")[0]
     t = np.linspace(0.0, 0.3, 31)
     tight = study.evaluation.reference_integrator
-    exact = loaded(contenders[0].field, basis, case.load, "compiled")
+    exact = loaded(candidates[0].field, basis, case.load, "compiled")
     expected = simulate(exact, t, case.x0, tight).x
     assert np.abs(expected[:, 0]).max() > 0.01
-    for contender in contenders:
-        found = simulate(contender.under(basis, case), t, case.x0, tight).x
+    for candidate in candidates:
+        found = simulate(candidate.under(basis, case), t, case.x0, tight).x
         np.testing.assert_allclose(found, expected, atol=1e-3 * np.abs(expected).max())
     free = evaluation_cases(basis, study, "free")[0]
-    assert contenders[0].under(basis, free) is contenders[0].field
+    assert candidates[0].under(basis, free) is candidates[0].field
 
 
 def test_the_cost_table_has_their_rows(study, basis, fitted):

@@ -15,7 +15,7 @@ Form = Literal["described", "numpy", "compiled", "torch"]
 
 
 @dataclass(frozen=True)
-class Contender:
+class Candidate:
     """A model in one implementation, under the name that tables and figures show.
 
     `own_energy` is the model's own Hamiltonian (k, 2r) -> (k,) [J], or None where it has none. With a
@@ -58,9 +58,9 @@ def is_users(surrogate: Any) -> bool:
     return bool(surrogate.architecture == "torch")
 
 
-def contenders(
+def candidates(
     basis: ModalBasis, variant: Variant, surrogates: Mapping[str, Any], with_torch: bool = False
-) -> list[Contender]:
+) -> list[Candidate]:
     """The reduced model described, numpy and compiled; each surrogate numpy, compiled and, on request, torch.
 
     `surrogates` maps an architecture's name to its fitted surrogate. Only networks have a torch form; those
@@ -69,35 +69,35 @@ def contenders(
     found = []
     for implementation in get_args(Implementation):
         rom = reduced_order(basis, variant, implementation)
-        found.append(Contender("rom", implementation, rom, rom.energy))
-    return [*found, *surrogate_contenders(surrogates, with_torch)]
+        found.append(Candidate("rom", implementation, rom, rom.energy))
+    return [*found, *surrogate_candidates(surrogates, with_torch)]
 
 
-def surrogate_contenders(surrogates: Mapping[str, Any], with_torch: bool = False) -> list[Contender]:
-    """Each surrogate numpy, compiled and, on request, torch, as `contenders` has them."""
+def surrogate_candidates(surrogates: Mapping[str, Any], with_torch: bool = False) -> list[Candidate]:
+    """Each surrogate numpy, compiled and, on request, torch, as `candidates` has them."""
     found = []
     for name, surrogate in surrogates.items():
         own_energy = getattr(surrogate, "energy", None)
         if not is_users(surrogate):
-            found.append(Contender(name, "numpy", surrogate, own_energy))
-        found.append(Contender(name, fastest(surrogate), compiled(surrogate), own_energy))
+            found.append(Candidate(name, "numpy", surrogate, own_energy))
+        found.append(Candidate(name, fastest(surrogate), compiled(surrogate), own_energy))
         if with_torch and is_users(surrogate) and fastest(surrogate) == "compiled":
-            found.append(Contender(name, "torch", surrogate, own_energy))
+            found.append(Candidate(name, "torch", surrogate, own_energy))
         if with_torch and isinstance(surrogate, Network):
             # torch takes seconds to import, and nothing else here needs it
             from flexsurr.training import torch_model
 
-            found.append(Contender(name, "torch", torch_model(surrogate), own_energy))
+            found.append(Candidate(name, "torch", torch_model(surrogate), own_energy))
     return found
 
 
-def with_learned_loads(name: str, surrogate: Any, loads: Mapping[str, LearnedMap]) -> list[Contender]:
+def with_learned_loads(name: str, surrogate: Any, loads: Mapping[str, LearnedMap]) -> list[Candidate]:
     """One surrogate in its fastest form, under each learned load instead of the exact one: no kinematics.
 
     `loads` maps what is added to the surrogate's `name` to generalised forces.
     """
     field, own_energy = compiled(surrogate), getattr(surrogate, "energy", None)
     return [
-        Contender(f"{name}_{added}", fastest(surrogate), field, own_energy, learned)
+        Candidate(f"{name}_{added}", fastest(surrogate), field, own_energy, learned)
         for added, learned in loads.items()
     ]
