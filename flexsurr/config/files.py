@@ -192,7 +192,7 @@ class FilesStudy(Learning):
     training_fraction: Share = 0.8
     """Share that trains; the rest validates."""
     rollouts: Rollouts = Rollouts()
-    """By what surrogates are judged."""
+    """How surrogates are scored."""
 
     @property
     def variants(self) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""How the airliner is flown: trim, manoeuvres, and the simulations it is judged by (a study's `flight`)."""
+"""How the airliner is flown: trim, manoeuvres, and the simulations that measure it (a study's `flight`)."""
 
 from typing import Annotated, Literal, Self
 

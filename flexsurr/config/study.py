@@ -191,10 +191,10 @@ class DescribedSimulations(Record):
 
 
 class EvaluationSettings(Record):
-    """Responses by which models are timed and judged, and by what each is stepped."""
+    """Responses by which models are timed and measured, and by what each is stepped."""
 
     simulations: Count = 10
-    """Free and forced responses that every model is timed on and judged by."""
+    """Free and forced responses by which every model is timed and measured."""
     described_simulations: DescribedSimulations = DescribedSimulations()
     """Of these, how many the described model is timed on."""
     scipy_simulations: Count = 3
@@ -323,7 +323,7 @@ class Study(Learning):
     trains_on: dict[str, str] = Field(default_factory=dict)
     """For a sweep, the name of the further dataset that it trains on. Others train on `dataset`."""
     evaluation: EvaluationSettings = EvaluationSettings()
-    """Responses by which models are timed and judged."""
+    """Responses by which models are timed and measured."""
     statics: Statics = Statics()
     """Static deflection, against the exact one."""
 

@@ -15,7 +15,7 @@ from flexsurr.flight.model import FlightModel
 from flexsurr.simulation.mapping import CompiledMapping
 
 REFERENCE = "vlm_frozen"
-"""What the others are judged against: the lattice with frozen matrices, as exact as the rebuilt one."""
+"""What the others are compared with: the lattice with frozen matrices, as exact as the rebuilt one."""
 
 ONE_MACH = "vlm_frozen_one_mach"
 """The lattice frozen at the Mach number of each flight's trim: see `frozen_at`."""

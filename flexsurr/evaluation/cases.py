@@ -1,4 +1,4 @@
-"""The simulations by which models are timed and judged: initial states, loads, and their tight solutions."""
+"""The simulations that time and measure models: initial states, loads, and their tight solutions."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ Response = Literal["free", "forced", "sustained"]
 """Free; from rest under the study's load until a random time; the same as long as the load may act."""
 
 # A trajectory is drawn from its number. Training uses the numbers from 0; these lie out of reach, and
-# apart, so that a model is not judged by the responses that selected it.
+# apart, so that a model is not scored by the responses that selected it.
 FIRST_SELECTION_CASE = 1_000_000
 FIRST_EVALUATION_CASE = 2_000_000
 
@@ -142,7 +142,7 @@ def reference_solution(
     """The reduced-order model of `variant`, integrated tightly by the study's `reference_integrator`.
 
     Raises ArithmeticError if the reference itself does not reach the end, or does not move: then nothing can
-    be judged.
+    be measured.
     """
     model = reduced_order(basis, variant, "compiled")
     trajectory = simulate(under(model, basis, case, "compiled"), t, case.x0, integrator)

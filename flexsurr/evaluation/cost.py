@@ -164,7 +164,7 @@ def measurements(
 
 @dataclass(frozen=True, eq=False)
 class Timed:
-    """One simulation that has been timed, and what it is to be judged by."""
+    """One simulation that has been timed, and what its errors are measured against."""
 
     setup: Setup
     reference: ReferenceSolution

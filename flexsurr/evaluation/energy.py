@@ -96,7 +96,7 @@ def energy_table(
     exact = [c for c in compiled if c.model == "rom"]
     integrators = (*settings.integrators, *SCIPY_DEFAULTS)
     fine = sample_times(settings.duration_s, min(settings.output_step_s, DRAWN_EVERY_S))
-    # a fixed step divides the time between samples, so integrators are judged at the study's own
+    # a fixed step divides the time between samples, so integrators are compared at the study's own
     coarse = sample_times(settings.duration_s, settings.output_step_s)
     frames = []
     for response in RESPONSES:

@@ -1,4 +1,4 @@
-"""The files of a new study: a structure, what to learn of it, and how to judge it, with comments.
+"""The files of a new study: a structure, what to learn of it, and how to score it, with comments.
 
 Everything in seconds, newtons and degrees follows from the structure's own frequencies and stiffness
 (`flexsurr.evaluation.choice`), so that the study runs as it is, whatever its scale.

@@ -28,7 +28,7 @@ NOISE = 0.1
 
 TIGHT = Integrator(method="scipy_dop853", rtol=1e-10, atol=1e-12)
 
-# What models are judged by: free responses of 20 s from fifteen states, q and p of 0.2 to 1 either way.
+# What models are scored by: free responses of 20 s from fifteen states, q and p of 0.2 to 1 either way.
 STARTS = 15
 LONG_S = 20.0
 LONG_SAMPLES = 100

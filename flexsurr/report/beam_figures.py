@@ -82,16 +82,16 @@ def _static_tip(ax: Axes, statics: pd.DataFrame, axis: str) -> None:
 
 def _static_errors(ax: Axes, statics: pd.DataFrame) -> None:
     """Distance of each model's tip from the exact one; from the full-order model's where none is exact."""
-    judge, title = ("exact", "distance from the exact tip")
+    truth, title = ("exact", "distance from the exact tip")
     if statics["x_exact_m"].isna().all():
-        judge, title = ("fom", "distance from the full-order tip")
+        truth, title = ("fom", "distance from the full-order tip")
     styles = {"fom": ("o", COLOURS["fom"], "full order"), "rom": ("x", COLOURS["rom"], "reduced order")}
     loaded = statics[statics["load_N"] != 0.0]
     for model, (marker, colour, name) in styles.items():
-        if model == judge:
+        if model == truth:
             continue
         distance_m = np.hypot(
-            loaded[f"x_{model}_m"] - loaded[f"x_{judge}_m"], loaded[f"z_{model}_m"] - loaded[f"z_{judge}_m"]
+            loaded[f"x_{model}_m"] - loaded[f"x_{truth}_m"], loaded[f"z_{model}_m"] - loaded[f"z_{truth}_m"]
         )
         ax.plot(
             loaded["load_N"],
@@ -103,7 +103,7 @@ def _static_errors(ax: Axes, statics: pd.DataFrame) -> None:
             markerfacecolor="none",
             markersize=3.5,
         )
-    if judge == "exact":  # two models, decades apart
+    if truth == "exact":  # two models, decades apart
         logarithmic(ax, y=True)
     ax.set(xlabel="tip load [N]", ylabel="distance [mm]", title=title, xlim=(0, None))
     ax.legend(loc="lower right")
