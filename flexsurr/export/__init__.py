@@ -3,10 +3,10 @@
 from flexsurr.export.aircraft import exported_aircraft
 from flexsurr.export.c_header import c_header
 from flexsurr.export.fmu import fmu
+from flexsurr.export.formulas import NotExported
 from flexsurr.export.model import ExportedModel, Quantity, exported_map, exported_surrogate
 from flexsurr.export.numpy_file import numpy_file
 from flexsurr.export.onnx_file import onnx_file
-from flexsurr.export.scaled_fields import NotExported
 
 __all__ = [
     "ExportedModel",

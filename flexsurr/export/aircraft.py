@@ -29,9 +29,8 @@ from flexsurr.aerodynamics.standard_atmosphere import (
     TROPOPAUSE_TEMPERATURE,
 )
 from flexsurr.export.expressions import Value, argument, concat, constant, each, matmul, where
-from flexsurr.export.learned_maps import outputs_of_map
+from flexsurr.export.formulas import NotExported, outputs_of_map
 from flexsurr.export.model import ExportedModel, Quantity, recommended_step
-from flexsurr.export.scaled_fields import NotExported
 from flexsurr.flight.equations_of_motion import (
     ALTITUDE_M,
     ATTITUDE,

@@ -18,8 +18,8 @@ from xml.etree import ElementTree as xml
 
 from flexsurr import __version__
 from flexsurr.export.c_header import c_header
+from flexsurr.export.formulas import NotExported
 from flexsurr.export.model import ExportedModel, Quantity
-from flexsurr.export.scaled_fields import NotExported
 
 SOURCE = Path(__file__).with_name("fmi3_model.c")
 STEP_NAME = "internal_step_s"

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from flexsurr.export.expressions import Value, constant, each, ordered, where
+from flexsurr.export.formulas import NotExported
 from flexsurr.export.model import ExportedModel
-from flexsurr.export.scaled_fields import NotExported
 
 OPSET = 18
 IR_VERSION = 9

@@ -1,4 +1,4 @@
-"""The scaled field and energy of every architecture as expressions: `scaled_field` of the surrogates."""
+"""The scaled field and energy of each surrogate, and the outputs of a learned map, as expressions."""
 
 from typing import Any, cast
 
@@ -13,8 +13,11 @@ from flexsurr.surrogates import (
     MLP,
     DissipativeHNN,
     EvenHNN,
+    LearnedMap,
+    NetworkMap,
     NetworkPortHamiltonian,
     PolynomialHamiltonian,
+    PolynomialMap,
     PolynomialPortHamiltonian,
     PortHamiltonian,
     Surrogate,
@@ -204,3 +207,23 @@ def _packed_places(r: int) -> NDArray[np.int64]:
     i, j = np.indices((r, r))
     high, low = np.maximum(i, j), np.minimum(i, j)
     return np.asarray(high * (high + 1) // 2 + low, dtype=np.int64)
+
+
+def outputs_of_map(learned: LearnedMap, u: Value) -> Value:
+    """The outputs (k,) at inputs `u` (n,), both in their units. Raises NotExported for a foreign map."""
+    scaled = (u - learned.inputs.origin) * (1.0 / learned.inputs.half)
+    if isinstance(learned, PolynomialMap):
+        return monomials(learned.exponents, scaled) @ learned.coefficients
+    if isinstance(learned, NetworkMap):
+        return _network(learned, scaled)
+    raise NotExported(f"there are no expressions of a map of the kind {learned.kind}")
+
+
+def _network(learned: NetworkMap, scaled: Value) -> Value:
+    sigma, _ = activation(learned.activation)
+    weights, biases, weights_out, biases_out = learned.layers()
+    if learned.products:
+        first, second = np.array(learned.products).T
+        scaled = concat([scaled, take(scaled, first) * take(scaled, second)])
+    outputs: Value = sigma(scaled @ weights + biases) @ weights_out + biases_out
+    return outputs * learned.outputs.half + learned.outputs.origin
