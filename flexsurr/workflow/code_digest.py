@@ -74,7 +74,9 @@ def _used(root: Path, module: str, name: str) -> list[ast.stmt]:
             defining.setdefault(defined, []).append(statement)
     if name not in defining:
         raise AttributeError(f"{module}: defines no {name}")
-    used = [node for node in body if isinstance(node, ast.Expr) and not isinstance(node.value, ast.Constant)]
+    used: list[ast.stmt] = [
+        node for node in body if isinstance(node, ast.Expr) and not isinstance(node.value, ast.Constant)
+    ]
     waiting = [name, *_names(used)]
     while waiting:
         found = defining.pop(waiting.pop(), [])
