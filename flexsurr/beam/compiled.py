@@ -8,12 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexsurr.beam.chain import Chain, chain, rotary_inertia
+from flexsurr.beam.clamp_rotation import TurningClamp
+from flexsurr.beam.clamp_sweep import ClampTurned
 from flexsurr.beam.dynamics import BeamModel
 from flexsurr.beam.planar import is_planar, plane
 from flexsurr.beam.planar_sweep import PlanarChain, PlanarMode, padded_length, planar_work_size
 from flexsurr.beam.projection import Projection
 from flexsurr.beam.rigid_sweep import RigidChain, RigidElements, rigid_work_size
 from flexsurr.beam.spatial_sweep import SpatialChain, spatial_work_size
+from flexsurr.simulation.history import histories_kernel
 from flexsurr.simulation.rhs import Array, evaluate
 
 
@@ -110,7 +113,7 @@ def rigid_kernel(projection: Projection, gyroscopic: bool) -> RigidChain:
     """The kernel of any coordinates of any chain."""
     beam = chain(projection.structure)
     modes = all_joints(projection)
-    tensors = np.zeros((beam.elements, 3, 3)) if beam.tensors is None else own(beam.tensors)
+    tensors = own_inertia(beam)
     squares, axes = np.linalg.eigh(tensors)
     roots = np.sqrt(np.maximum(squares, 0.0))[:, :, None] * np.swapaxes(axes, 1, 2)
     inertia = projection.modes.T @ rotary_inertia(projection.structure) @ projection.modes
@@ -131,6 +134,31 @@ def rigid_kernel(projection: Projection, gyroscopic: bool) -> RigidChain:
         gyroscopic=gyroscopic,
         heavy=bool(np.any(beam.gravity)),
     )
+
+
+def turned_kernel(model: NamedTuple, projection: Projection, clamp: TurningClamp) -> ClampTurned:
+    """The kernel of a model whose clamp turns."""
+    beam = chain(projection.structure)
+    return ClampTurned(
+        model=model,
+        modes=all_joints(projection),
+        elements=rigid_elements(beam),
+        masses=own(beam.masses),
+        tensors=own_inertia(beam),
+        unloaded=np.zeros((beam.elements, 3)),
+        rate=own(clamp.rate_rad_s * clamp.axis),
+        axis=own(clamp.axis),
+        arm=own(clamp.arm),
+        gravity=own(clamp.gravity),
+        history=histories_kernel([clamp.history]),
+        exact=beam.tensors is not None,
+        tilts=clamp.tilts,
+    )
+
+
+def own_inertia(beam: Chain) -> Array:
+    """(N, 3, 3) inertia of the elements that turns with them [kg m²]; zeros where there is none."""
+    return np.zeros((beam.elements, 3, 3)) if beam.tensors is None else own(beam.tensors)
 
 
 def rigid_elements(beam: Chain) -> RigidElements:

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from flexsurr.beam.chain import Chain, chain
+from flexsurr.beam.clamp_rotation import Turning
 from flexsurr.beam.dynamics import BeamModel
 from flexsurr.beam.kinematics import cross
 from flexsurr.beam.rotation_vector import rotation
@@ -174,6 +175,28 @@ def gyroscopic_forces(structure: Structure, q: Array, rates: Array, modes: Array
         if beam.tensors is not None:
             kinetic += 0.5 * sum(w @ tensor @ w for tensor, w in zip(beam.tensors, spins, strict=True))
         forces[k] = kinetic.imag / _STEP
+    return forces
+
+
+def inertial_forces(
+    structure: Structure, q: Array, rates: Array, jacobian: Jacobians, turning: Turning
+) -> Array:
+    """Generalised forces (n,) of a turning clamp at q (n,) and q̇ (n,): see `clamp_rotation`."""
+    beam, at = chain(structure), points(structure, q)
+    seen, spins = velocities(structure, q, rates)
+    omega, growth = turning.velocity, turning.acceleration
+    forces = np.zeros(len(q))
+    for mass, place, velocity, columns in zip(beam.masses, at.masses, seen, jacobian.masses, strict=True):
+        arm = turning.arm + place
+        acceleration = cross(growth, arm) + cross(omega, cross(omega, arm)) + 2.0 * cross(omega, velocity)
+        forces += columns.T @ (mass * (turning.tilt - acceleration))
+    if beam.tensors is not None:
+        bodies = zip(at.frames, beam.tensors, spins, jacobian.turning, strict=True)
+        for frame, tensor, spin, columns in bodies:
+            clamp = frame.T @ omega
+            moment = tensor @ (frame.T @ growth - cross(spin, clamp))
+            moment += cross(clamp + spin, tensor @ (clamp + spin)) - cross(spin, tensor @ spin)
+            forces -= columns.T @ (frame @ moment)
     return forces
 
 

@@ -41,9 +41,11 @@ def find_equilibrium(
     """The η (r,) with Φᵀ (K q − Q(q)) = 0 under gravity and `load`, eq. 8; q for a structure.
 
     Of all equilibria it is the one to which the undeformed shape leads as gravity and load grow together.
-    Under a load without a potential, such as one that follows, it need not be stable.
-    A load that changes with time is held as it is at `at_s` [s]. Raises EquilibriumNotFound where the path
-    becomes unstable, and ValueError for a load that changes with time where no instant is given.
+    Under a load without a potential, such as one that follows, it need not be stable. Where the clamp turns
+    it is at rest against the clamp, and its stability is that without Coriolis forces.
+    A load that changes with time is held as it is at `at_s` [s], a clamp at its rate. Raises
+    EquilibriumNotFound where the path becomes unstable, and ValueError for a load that changes with time
+    where no instant is given.
     """
     balance = _Balance(projection(system), static_load(_structure(system), load, at_s))
     eta, reached, step = np.zeros(balance.space.coordinates), 0.0, 1.0
@@ -142,7 +144,11 @@ class _Balance:
         beam = chain(self.space.structure)
         forces = float(beam.masses.sum() * np.linalg.norm(beam.gravity))
         couples = 0.0
-        for load in self.load:
+        if (turning := self.load.turning) is not None:
+            reach = self.space.structure.length_m + float(np.linalg.norm(turning.arm))
+            centrifugal = reach * float(turning.velocity @ turning.velocity)
+            forces += float(beam.masses.sum()) * (centrifugal + float(np.linalg.norm(turning.tilt)))
+        for load in (self.load.dead, self.load.following):
             pushes = (*load.on_centres, load.on_tip, *load.on_masses)
             forces += float(sum(np.linalg.norm(push) for push in pushes))
             couples += float(sum(np.linalg.norm(couple) for couple in load.couples))
@@ -165,7 +171,9 @@ def _buckling(system: Structure | ModalBasis, load: Load | None, acts: Acting, f
     if isinstance(system, ModalBasis):
         name += f" in {system.modes.shape[1]} mode(s)"
     causes = []
-    if load is not None:
+    if acts.turning is not None:
+        causes.append(f"at {np.sqrt(factor) * np.linalg.norm(acts.turning.velocity):.4g} rad/s")
+    if load is not None and any(part.any() for forces in (acts.dead, acts.following) for part in forces):
         forces = acts.dead.plus(acts.following)
         total = np.linalg.norm((forces.on_centres + forces.on_masses).sum(axis=0) + forces.on_tip)
         couple = np.linalg.norm(forces.couples.sum(axis=0))

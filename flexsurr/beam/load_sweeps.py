@@ -6,7 +6,7 @@ Here are dead forces, and couples where a plane makes them constant; `rigid_load
 from typing import Any, NamedTuple
 
 from flexsurr.beam.planar_sweep import padded_length, planar_angles
-from flexsurr.beam.spatial_sweep import AXES, add_dead_forces, sweep_axes
+from flexsurr.beam.spatial_sweep import AXES, add_dead_forces, add_projected, sweep_axes
 from flexsurr.simulation.history import HistoriesKernel, history_factor
 from flexsurr.simulation.rhs import Array, implements_rhs, rhs
 
@@ -70,7 +70,6 @@ def planar_loaded_rhs(kernel, t, x, dx, work):
 def spatial_loaded_rhs(kernel, t, x, dx, work):
     """The model's right-hand side and the loads' moments about the joints' axes."""
     rhs(kernel.model, t, x, dx, work)
-    r = kernel.modes.shape[0]
     n = kernel.on_centres.shape[1]
     axes, scratch = work[: AXES * n], work[AXES * n :]
     forces, on_centres, on_tip = scratch[: 4 * n], scratch[4 * n : 7 * n], scratch[7 * n : 7 * n + 3]
@@ -91,9 +90,4 @@ def spatial_loaded_rhs(kernel, t, x, dx, work):
     if not known:
         return
     add_dead_forces(axes, 0.0, kernel.weightless, on_centres.reshape((n, 3)), on_tip, forces)
-    for k in range(r):
-        row = kernel.modes[k]
-        force = 0.0
-        for i in range(4 * n):
-            force += row[i] * forces[i]
-        dx[r + k] += force
+    add_projected(kernel.modes, forces, dx)

@@ -1,5 +1,7 @@
 """Models under a load: the right-hand side of any model in the beam's coordinates plus Q = Φᵀ Jᵀ F(t, q).
 
+Where the clamp turns, F depends on the rates too: they are the model's own, η̇ of its right-hand side.
+
 With a surrogate as the model this is the paper's augmented surrogate (its Fig. 11).
 """
 
@@ -12,9 +14,11 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 
 from flexsurr.beam.chain import chain
-from flexsurr.beam.compiled import all_joints, own, padded, rigid_elements
-from flexsurr.beam.described import jacobians
-from flexsurr.beam.kinematics import configuration, element_frames, tip_position, tip_twist
+from flexsurr.beam.clamp_rotation import TurningClamp, turning_clamp
+from flexsurr.beam.clamp_sweep import clamp_work_size
+from flexsurr.beam.compiled import all_joints, own, padded, rigid_elements, turned_kernel
+from flexsurr.beam.described import inertial_forces, jacobians
+from flexsurr.beam.kinematics import configuration, element_frames, tip_position, tip_twist, velocities
 from flexsurr.beam.load_sweeps import (
     PlanarLoaded,
     SpatialLoaded,
@@ -76,6 +80,11 @@ class LoadedModel(ABC):
         """What the load exerts, one part for each history."""
         return load_parts(self.projection.structure, self.load)
 
+    @cached_property
+    def clamp(self) -> TurningClamp | None:
+        """How the clamp turns, if it does."""
+        return turning_clamp(self.projection.structure, self.load.parts)
+
     @abstractmethod
     def derivative(self, t: float, x: Array) -> Array:
         """ẋ (2r,) at time t [s] and states x (2r,)."""
@@ -88,22 +97,23 @@ class InterpretedLoad(LoadedModel):
         """ẋ (2r,) at time t [s] and states x (2r,)."""
         factors = [factor(part.history, t) for part in self.parts]
         dx = np.array(self.model.derivative(t, x))
-        if any(factors):
+        turning = None if self.clamp is None else self.clamp.at(t)
+        if any(factors) or turning is not None:
             r = self.projection.coordinates
-            now = acting(self.projection.structure.elements, self.parts, factors)
-            dx[r:] += self.generalised_force(x[:r], now)
+            now = acting(self.projection.structure.elements, self.parts, factors, turning)
+            dx[r:] += self.generalised_force(x[:r], dx[:r], now)
         return dx
 
     @abstractmethod
-    def generalised_force(self, eta: Array, now: Acting) -> Array:
-        """Φᵀ Jᵀ F (r,) at η (r,) of what acts now."""
+    def generalised_force(self, eta: Array, rates: Array, now: Acting) -> Array:
+        """Φᵀ Jᵀ F (r,) at η (r,) and η̇ (r,) of what acts now."""
 
 
 class DescribedLoad(InterpretedLoad):
     """Q from the Jacobian by complex steps, joint by joint."""
 
-    def generalised_force(self, eta: Array, now: Acting) -> Array:
-        """Φᵀ Jᵀ F (r,) at η (r,) of what acts now."""
+    def generalised_force(self, eta: Array, rates: Array, now: Acting) -> Array:
+        """Φᵀ Jᵀ F (r,) at η (r,) and η̇ (r,) of what acts now."""
         modes, structure = self.projection.modes, self.projection.structure
         q = modes @ eta
         acts = now.dead
@@ -119,6 +129,8 @@ class DescribedLoad(InterpretedLoad):
         if acts.couples.any():
             for columns, couple in zip(_turning(structure, q), acts.couples, strict=True):
                 forces = forces + columns.T @ couple
+        if now.turning is not None:
+            forces = forces + inertial_forces(structure, q, modes @ rates, jacobian, now.turning)
         return np.asarray(modes.T @ forces)
 
 
@@ -139,21 +151,24 @@ def _turning(structure: Structure, q: Array) -> Array:
 class VectorisedLoad(InterpretedLoad):
     """Q from moments about the joints."""
 
-    def generalised_force(self, eta: Array, now: Acting) -> Array:
-        """Φᵀ Jᵀ F (r,) at η (r,) of what acts now."""
+    def generalised_force(self, eta: Array, rates: Array, now: Acting) -> Array:
+        """Φᵀ Jᵀ F (r,) at η (r,) and η̇ (r,) of what acts now."""
         beam, modes = chain(self.projection.structure), self.projection.modes
-        return np.asarray(modes.T @ now.generalised(beam, configuration(beam, modes @ eta)))
+        at, motion = configuration(beam, modes @ eta), None
+        if now.turning is not None:
+            motion = velocities(beam, at, (modes @ rates)[None]).combined(np.ones(1))
+        return np.asarray(modes.T @ now.generalised(beam, at, motion=motion))
 
 
 class VectorisedPlanarLoad(InterpretedLoad):
-    """Q of a chain in a plane under dead forces and any couples, from constant moment arms."""
+    """Q of a chain in a plane under dead forces and couples, by constant moment arms; the clamp at rest."""
 
     @cached_property
     def _frame(self) -> Plane:
         return plane(self.projection)
 
-    def generalised_force(self, eta: Array, now: Acting) -> Array:
-        """Φᵀ Jᵀ F (r,) at η (r,) of what acts now."""
+    def generalised_force(self, eta: Array, rates: Array, now: Acting) -> Array:
+        """Φᵀ Jᵀ F (r,) at η (r,) and η̇ (r,) of what acts now."""
         arms = planar_arms(self._frame, now)
         angles = self._frame.slopes @ eta
         force: Array = (arms[1] * np.cos(angles) - arms[0] * np.sin(angles) + arms[2]) @ self._frame.slopes
@@ -182,23 +197,29 @@ class CompiledLoad(LoadedModel):
     @cached_property
     def kernel(self) -> NamedTuple:
         """The model's kernel within the load's."""
+        space = self.projection
+        model = self.model.kernel
+        if self.clamp is not None:
+            model = turned_kernel(model, space, self.clamp)
+        if not self.parts:
+            return model
         histories = histories_kernel([part.history for part in self.parts])
-        beam = chain(self.projection.structure)
+        beam = chain(space.structure)
         if self._sweep == "planar":
-            frame = plane(self.projection)
+            frame = plane(space)
             arms = [planar_arms(frame, acting(beam.elements, [part], [1.0])) for part in self.parts]
-            return PlanarLoaded(self.model.kernel, padded(frame.slopes.T), padded(np.array(arms)), histories)
-        modes = all_joints(self.projection)
+            return PlanarLoaded(model, padded(frame.slopes.T), padded(np.array(arms)), histories)
+        modes = all_joints(space)
         forces = Forces(
             *(own(np.array(each)) for each in zip(*(part.forces for part in self.parts), strict=True))
         )
         if self._sweep == "spatial":
             return SpatialLoaded(
-                self.model.kernel, modes, own(beam.clamp), beam.element_length, np.zeros(3),
+                model, modes, own(beam.clamp), beam.element_length, np.zeros(3),
                 forces.on_centres, forces.on_tip, histories,
             )  # fmt: skip
         follows = np.array([part.follows for part in self.parts])
-        return RigidLoaded(self.model.kernel, modes, rigid_elements(beam), *forces, follows, histories)
+        return RigidLoaded(model, modes, rigid_elements(beam), *forces, follows, histories)
 
     @property
     def work_size(self) -> int:
@@ -208,8 +229,9 @@ class CompiledLoad(LoadedModel):
             "spatial": spatial_load_work_size,
             "rigid": rigid_load_work_size,
         }
-        load = sizes[self._sweep](self.projection.structure.elements)
-        return int(max(self.model.work_size, load))
+        elements = self.projection.structure.elements
+        turned = 0 if self.clamp is None else clamp_work_size(elements)
+        return int(max(self.model.work_size, turned, sizes[self._sweep](elements)))
 
     def derivative(self, t: float, x: Array) -> Array:
         """ẋ (2r,) at time t [s] and states x (2r,)."""
@@ -225,7 +247,8 @@ def loaded(
     """`model` under `load`; its states must be those of `system`: (q, p), or (η, p) of a basis.
 
     `model` may be a full-order or reduced-order model or a surrogate. Its `energy` is kept if it has one.
-    ValueError where the number of states differs; TypeError for a compiled load on a model without a kernel.
+    ValueError where the number of states differs, and for a clamp that cannot turn so; TypeError for a
+    compiled load on a model without a kernel.
     """
     check_implementation(implementation)
     space = projection(system)
@@ -240,7 +263,9 @@ def loaded(
         if not isinstance(model, CompiledModel):
             raise TypeError(f"a compiled load needs a compiled model; {type(model).__name__} has no kernel")
         return CompiledLoad(model, space, load)
-    planar = stays_planar(space.structure, load_parts(space.structure, load))
+    planar = turning_clamp(space.structure, load.parts) is None and stays_planar(
+        space.structure, load_parts(space.structure, load)
+    )
     return VectorisedPlanarLoad(model, space, load) if planar else VectorisedLoad(model, space, load)
 
 

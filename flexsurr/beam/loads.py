@@ -7,13 +7,16 @@ from typing import NamedTuple
 import numpy as np
 
 from flexsurr.beam.chain import Chain, chain
-from flexsurr.beam.kinematics import Configuration, generalised_forces
+from flexsurr.beam.clamp_rotation import Turning, turning_clamp
+from flexsurr.beam.kinematics import Configuration, Velocities, generalised_forces
 from flexsurr.beam.planar import is_planar
 from flexsurr.config.history import Constant
 from flexsurr.config.load import (
     ClampAcceleration,
+    ClampRotation,
     DistributedForce,
     DistributedMoment,
+    Pushing,
     SeveralLoads,
     Shape,
     Single,
@@ -72,23 +75,36 @@ class Acting(NamedTuple):
 
     dead: Forces
     following: Forces
+    turning: Turning | None = None  # of the clamp
 
-    def generalised(self, beam: Chain, at: Configuration, on_masses: Array | None = None) -> Array:
+    def generalised(
+        self,
+        beam: Chain,
+        at: Configuration,
+        on_masses: Array | None = None,
+        motion: Velocities | None = None,
+    ) -> Array:
         """(..., n) Q at a configuration; `on_masses` (N, 3) [N] acts besides.
 
+        `motion` is what a turning clamp asks for; without it the chain is at rest against the clamp.
         A joint feels the moment about it of all forces from its element outwards (see `generalised_forces`),
         and all couples from its element outwards.
         """
         forces = self.dead
         if any(part.any() for part in self.following):
             forces = forces.plus(turned(self.following, at.frames))
-        weights = forces.on_masses if on_masses is None else forces.on_masses + on_masses
+        weights, couples = forces.on_masses, forces.couples
+        if on_masses is not None:
+            weights = weights + on_masses
+        if self.turning is not None:
+            pushes, moments = self.turning.exerted(beam, at, motion)
+            weights, couples = weights + pushes, couples + moments
         # the tip's force beside the elements', whatever the leading axes
         on_tip = forces.on_tip[..., None, :]
         generalised = generalised_forces(beam, at, weights, forces.on_centres, on_tip)
-        if not forces.couples.any():
+        if not couples.any():
             return generalised
-        return np.asarray(generalised + of_couples(beam, at, forces.couples))
+        return np.asarray(generalised + of_couples(beam, at, couples))
 
 
 # ∫ of each shape from the clamp to ξ = x/L.
@@ -101,14 +117,18 @@ _INTEGRALS: dict[Shape, Callable[[Array], Array]] = {
 
 
 def load_parts(structure: Structure, load: Load) -> tuple[Part, ...]:
-    """What `load` exerts, part by part. ValueError for a load outside the span."""
+    """What `load` exerts whatever the velocities, part by part: all of it but a turning clamp.
+
+    ValueError for a load outside the span.
+    """
     return tuple(
         Part(load_forces(structure, part), getattr(part, "follows", False), part.history)
         for part in load.parts
+        if not isinstance(part, ClampRotation)
     )
 
 
-def load_forces(structure: Structure, load: Single) -> Forces:
+def load_forces(structure: Structure, load: Pushing) -> Forces:
     """The forces of `load` at a factor of 1; distributed ones by eqs. 13 and 14.
 
     ValueError for a load outside the span.
@@ -146,12 +166,14 @@ def _on_elements(structure: Structure, load: DistributedForce | DistributedMomen
     return received
 
 
-def acting(elements: int, parts: Sequence[Part], factors: Sequence[float]) -> Acting:
-    """All parts together, each times its factor."""
+def acting(
+    elements: int, parts: Sequence[Part], factors: Sequence[float], turning: Turning | None = None
+) -> Acting:
+    """All parts together, each times its factor, and a clamp that turns."""
     sums = {follows: Forces.none(elements) for follows in (False, True)}
     for part, number in zip(parts, factors, strict=True):
         sums[part.follows] = sums[part.follows].plus(part.forces.times(number))
-    return Acting(sums[False], sums[True])
+    return Acting(sums[False], sums[True], turning)
 
 
 def turned(forces: Forces, frames: Array) -> Forces:
@@ -172,25 +194,26 @@ def of_couples(beam: Chain, at: Configuration, couples: Array) -> Array:
 
 
 def static_load(structure: Structure, load: Load | None, at_s: float | None = None) -> Acting:
-    """What a constant load exerts, or any load held as it is at `at_s` [s].
+    """What a constant load exerts, or any load held as it is at `at_s` [s]: of a turning clamp, its rate.
 
     ValueError for a load that changes with time where no instant is given.
     """
     if load is None:
         return acting(structure.elements, (), ())
-    parts = load_parts(structure, load)
+    parts, clamp = load_parts(structure, load), turning_clamp(structure, load.parts)
+    turning = None if clamp is None else clamp.held(at_s)
     if at_s is not None:
-        return acting(structure.elements, parts, [factor(part.history, at_s) for part in parts])
+        return acting(structure.elements, parts, [factor(part.history, at_s) for part in parts], turning)
     if not all(isinstance(part.history, Constant) for part in parts):
         raise ValueError(f"{load} changes with time: it has no static equilibrium")
-    return acting(structure.elements, parts, [1.0] * len(parts))
+    return acting(structure.elements, parts, [1.0] * len(parts), turning)
 
 
 def has_potential(structure: Structure, at_rest: Acting) -> bool:
     """Whether the load's work depends on the shape alone, so that its tangent stiffness is symmetric.
 
-    Dead forces have a potential, and moments in the plane of a chain that stays in one. What follows has
-    none, nor has a moment about an axis fixed in space.
+    Dead forces have a potential, as have centrifugal ones, and moments in the plane of a chain that stays in
+    one. What follows has none, nor has a moment about an axis fixed in space.
     """
     if not at_rest.following.only_couples:
         return False
@@ -199,8 +222,8 @@ def has_potential(structure: Structure, at_rest: Acting) -> bool:
 
 
 def load_ends_s(load: Load) -> float:
-    """When the last part of it ends [s]; infinite where one does not."""
-    return max(end_s(part.history) for part in load.parts)
+    """When the last part of it ends [s]; infinite where one does not, and where a clamp has turned."""
+    return max(math.inf if isinstance(part, ClampRotation) else end_s(part.history) for part in load.parts)
 
 
 def load_breakpoints(load: Load) -> set[float]:

@@ -5,12 +5,14 @@ from scipy.linalg import eigh
 
 from flexsurr.beam.chain import chain, check_coordinates
 from flexsurr.beam.equilibrium import EquilibriumNotFound, find_equilibrium, tangent_stiffness
-from flexsurr.beam.kinematics import configuration, generalised_forces, mass_matrix
-from flexsurr.beam.loads import Load, has_potential, static_load
+from flexsurr.beam.kinematics import configuration, generalised_forces, mass_matrix, velocities
+from flexsurr.beam.loads import Acting, Load, has_potential, static_load
 from flexsurr.beam.projection import ModalBasis
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Reduction
 from flexsurr.simulation.rhs import Array
+
+_ROUNDING = 1e-10  # of a Coriolis force, beside the largest that there might be
 
 
 def natural_modes(structure: Structure, equilibrium: Array, load: Load | None = None) -> tuple[Array, Array]:
@@ -19,14 +21,13 @@ def natural_modes(structure: Structure, equilibrium: Array, load: Load | None = 
     The stiffness is the tangent one about `equilibrium` (n,): springs less the change of the generalised
     forces of gravity and `load` with q. Each mode's sign lifts the tip; where the tip does not move in
     z, the mode's largest component is positive. EquilibriumNotFound where the equilibrium is unstable;
-    ValueError under a load without a potential, whose motion has no such modes.
+    ValueError under a load without a potential, whose motion has no such modes, and where the clamp turns and
+    Coriolis forces act on small motions: those of a straight chain across its axis they leave alone.
     """
     q = check_coordinates(structure, equilibrium, "equilibrium")
-    if not has_potential(structure, static_load(structure, load)):
-        raise ValueError(
-            f"{structure.name}: under a load that follows, or a moment in space, there are no real modes"
-        )
-    squares, modes = eigh(tangent_stiffness(structure, q, load), mass_matrix(structure, q))
+    mass = mass_matrix(structure, q)
+    _check_motion(structure, q, static_load(structure, load), mass)
+    squares, modes = eigh(tangent_stiffness(structure, q, load), mass)
     if squares[0] < 0.0:
         raise EquilibriumNotFound(
             f"{structure.name}: the equilibrium is unstable (ω² = {squares[0]:.3g} rad²/s²)"
@@ -55,6 +56,25 @@ def reduce(structure: Structure, reduction: Reduction) -> ModalBasis:
     if reduction.normalisation == "unit":
         modes = modes / np.linalg.norm(modes, axis=0)
     return ModalBasis.of(structure, equilibrium, modes, omega[: reduction.modes], reduction.normalisation)
+
+
+def _check_motion(structure: Structure, q: Array, acts: Acting, mass: Array) -> None:
+    """ValueError where small motions about q (n,), of mass (n, n), are no sum of real modes."""
+    if not has_potential(structure, acts):
+        raise ValueError(
+            f"{structure.name}: under a load that follows, or a moment in space, there are no real modes"
+        )
+    if acts.turning is None:
+        return
+    beam = chain(structure)
+    at = configuration(beam, q)
+    unit_rates = velocities(beam, at, np.eye(beam.coordinates))
+    coriolis = acts.generalised(beam, at, motion=unit_rates) - acts.generalised(beam, at)
+    size = np.linalg.norm(acts.turning.velocity) * np.abs(mass).max()
+    if np.abs(coriolis).max() > _ROUNDING * size:
+        raise ValueError(
+            f"{structure.name}: Coriolis forces of a turning clamp couple its motions: it has no real modes"
+        )
 
 
 def _signs(structure: Structure, q: Array, modes: Array) -> Array:

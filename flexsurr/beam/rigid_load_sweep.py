@@ -10,6 +10,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from flexsurr.beam.rigid_sweep import BODY, RigidElements, add_forces_on_bodies, sweep_bodies
+from flexsurr.beam.spatial_sweep import add_projected
 from flexsurr.simulation.history import HistoriesKernel, history_factor
 from flexsurr.simulation.rhs import FLOATING_POINT, Array, implements_rhs, rhs
 
@@ -63,7 +64,6 @@ def add_couples_on_bodies(bodies, couples, forces):
 def rigid_loaded_rhs(kernel, t, x, dx, work):
     """The model's right-hand side and the loads' moments about the joints' axes."""
     rhs(kernel.model, t, x, dx, work)
-    r = kernel.modes.shape[0]
     n = kernel.on_middles.shape[1]
     bodies, scratch = work[: BODY * n], work[BODY * n :]
     forces, on_middles, on_masses = scratch[: 4 * n], scratch[4 * n : 7 * n], scratch[7 * n : 10 * n]
@@ -89,9 +89,4 @@ def rigid_loaded_rhs(kernel, t, x, dx, work):
         return
     add_forces_on_bodies(bodies, on_masses.reshape((n, 3)), on_middles.reshape((n, 3)), on_tip, forces)
     add_couples_on_bodies(bodies, couples, forces)
-    for k in range(r):
-        row = kernel.modes[k]
-        force = 0.0
-        for i in range(4 * n):
-            force += row[i] * forces[i]
-        dx[r + k] += force
+    add_projected(kernel.modes, forces, dx)

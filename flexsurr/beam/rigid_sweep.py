@@ -11,7 +11,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from flexsurr.beam.rotation_vector import stumpff_4_5
-from flexsurr.beam.spatial_sweep import joint_values
+from flexsurr.beam.spatial_sweep import add_projected, joint_values
 from flexsurr.beam.trigonometry import sine_cosine
 from flexsurr.simulation.linear_solvers import solve_positive_definite
 from flexsurr.simulation.rhs import FLOATING_POINT, Array, implements_rhs
@@ -373,9 +373,4 @@ def rigid_chain_rhs(kernel, t, x, dx, work):
         # An untyped 0 would compile the sweep once more, for that number alone.
         sweep_body_velocities(bodies, np.int64(0), rates, roots, masses, spins)
         add_gyroscopic_forces_of_bodies(kernel, bodies, rates, roots, masses, spins, forces)
-    for k in range(r):
-        row = kernel.modes[k]
-        force = 0.0
-        for i in range(4 * n):
-            force += row[i] * forces[i]
-        dx[r + k] += force
+    add_projected(kernel.modes, forces, dx)

@@ -4,8 +4,10 @@ import numpy as np
 from scipy.linalg import eigh, eigvalsh
 
 from flexsurr.beam.chain import stiffness_matrix
+from flexsurr.beam.clamp_rotation import turning_clamp
 from flexsurr.beam.equilibrium import EquilibriumNotFound, find_equilibrium
 from flexsurr.beam.kinematics import mass_matrix
+from flexsurr.config.load import Load
 from flexsurr.config.structure import Structure
 
 _SINGULAR = 1e-13  # of a mass matrix whose diagonal is 1
@@ -34,6 +36,11 @@ def check_structure(structure: Structure) -> None:
             raise ValueError(
                 f"gravity_m_s2: {error}; allowed: a stiffer or lighter structure, or less gravity"
             ) from None
+
+
+def check_load(structure: Structure, load: Load) -> None:
+    """ValueError, one line, for a clamp that cannot turn as the load says."""
+    turning_clamp(structure, load.parts)
 
 
 def unit_hint(structure: Structure) -> str:

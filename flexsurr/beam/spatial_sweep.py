@@ -56,6 +56,18 @@ def joint_values(modes, x, joints):
 
 
 @njit(fastmath=FLOATING_POINT, error_model="numpy", cache=True)
+def add_projected(modes, forces, dx):
+    """Add Φᵀ Q to the rates of the momenta, dx[r:], for modes (r, 4 N) and forces Q (4 N,) on the joints."""
+    r, m = modes.shape
+    for k in range(r):
+        row = modes[k]
+        force = 0.0
+        for i in range(m):
+            force += row[i] * forces[i]
+        dx[r + k] += force
+
+
+@njit(fastmath=FLOATING_POINT, error_model="numpy", cache=True)
 def sweep_axes(modes, clamp, element_length, x, axes, work):
     """Write the axes (AXES N,) of the chain at η = x[:r]; `work` is scratch of 10 N."""
     n = modes.shape[1] // 4
@@ -209,9 +221,4 @@ def spatial_chain_rhs(kernel, t, x, dx, work):
         # An untyped 0 would compile the sweep once more, for that number alone.
         sweep_velocities(axes, kernel.offset, np.int64(0), rates, roots, masses)
         add_gyroscopic_forces(axes, kernel.offset, kernel.mass, rates, roots, masses, forces)
-    for k in range(r):
-        row = kernel.modes[k]
-        force = 0.0
-        for i in range(4 * n):
-            force += row[i] * forces[i]
-        dx[r + k] += force
+    add_projected(kernel.modes, forces, dx)

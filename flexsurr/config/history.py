@@ -46,6 +46,18 @@ class Ramp(Interval):
     """How long it grows [s]."""
 
 
+class SmoothRamp(Interval):
+    """A factor that grows from 0 at the start to 1, and stays there, without a jump of its first two rates.
+
+    τ − sin(2π τ) / 2π with τ = (t − start_s) / rise_s: the spin-up of Simo and Vu-Quoc (1986).
+    """
+
+    kind: Literal["smooth_ramp"] = "smooth_ramp"
+    """Growing smoothly, then held."""
+    rise_s: Positive
+    """How long it grows [s]."""
+
+
 class Sine(Interval):
     """The factor sin(ω t + phase)."""
 
@@ -109,10 +121,11 @@ class Table(Interval):
         return self
 
 
-# Another history is one more record here, and its factor in flexsurr.simulation.history.
+# Another history is one more record here, and its factor, slope and integral in flexsurr.simulation.history.
 History = Annotated[
     Annotated[Constant, Tag("constant")]
     | Annotated[Ramp, Tag("ramp")]
+    | Annotated[SmoothRamp, Tag("smooth_ramp")]
     | Annotated[Sine, Tag("sine")]
     | Annotated[OneMinusCosine, Tag("one_minus_cosine")]
     | Annotated[Power, Tag("power")]

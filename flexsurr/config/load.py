@@ -239,7 +239,41 @@ class ClampAcceleration(_Directed):
         )
 
 
-Single = TipForce | TipMoment | DistributedForce | DistributedMoment | ClampAcceleration
+Pushing = TipForce | TipMoment | DistributedForce | DistributedMoment | ClampAcceleration
+"""What exerts the same forces, but for its history, whatever the velocities."""
+
+
+class ClampRotation(_Directed):
+    """The clamp turns about an axis fixed in space, at ω = factor(t) times this rate, from angle 0.
+
+    Seen from the clamp each mass feels −m (ω̇ × r + ω × (ω × r) + 2 ω × v) at r from the axis, and gravity
+    turns. Positions, velocities and energies of the structure stay those that are seen from the clamp, and
+    other loads turn with it. The rate may begin at t = 0 with any value, as of a rotor that is turning; it
+    must not jump later. A forced response that ends its load early leaves the clamp turning.
+    """
+
+    kind: Literal["clamp_rotation"] = "clamp_rotation"
+    """The clamp is turned."""
+    rate_rad_s: float
+    """Its rate [rad/s] at a factor of 1, positive about `direction` by the right hand. A clamp that swings by
+    an angle a, a sin(ω t), turns at the rate a ω with a sine of ω as history, phase π/2.
+    """
+    direction: Vector = AXES[2]
+    """The axis, of any length but 0, in the clamp's frame before it is turned. By default up."""
+    arm_m: Vector = (0.0, 0.0, 0.0)
+    """From a point of the axis to the clamp [m], along x, y and z of the clamp's frame before it is turned:
+    [0.3, 0, 0] for a blade on a hub of 0.3 m.
+    """
+
+    def until(self, end_s: float) -> Self:
+        """The same: a clamp does not stop at once."""
+        return self
+
+    def _felt(self, structure: Structure) -> bool:
+        return bool(self.rate_rad_s)
+
+
+Single = Pushing | ClampRotation
 """A load that follows one history."""
 
 _EachSingle = (
@@ -248,6 +282,7 @@ _EachSingle = (
     | Annotated[DistributedForce, Tag("distributed")]
     | Annotated[DistributedMoment, Tag("distributed_moment")]
     | Annotated[ClampAcceleration, Tag("clamp_acceleration")]
+    | Annotated[ClampRotation, Tag("clamp_rotation")]
 )
 
 
@@ -257,7 +292,14 @@ class SeveralLoads(Record):
     kind: Literal["several"] = "several"
     """More than one load."""
     loads: Annotated[tuple[Annotated[_EachSingle, Discriminator(by_kind)], ...], Field(min_length=1)]
-    """Each as if it acted alone; their forces add up."""
+    """Each as if it acted alone; their forces add up. The clamp turns in one way at most."""
+
+    @model_validator(mode="after")
+    def _turns_in_one_way(self) -> Self:
+        rotations = sum(isinstance(load, ClampRotation) for load in self.loads)
+        if rotations > 1:
+            raise ValueError(f"loads: {rotations} of kind clamp_rotation; allowed: one at most")
+        return self
 
     @property
     def parts(self) -> tuple[Single, ...]:
@@ -287,6 +329,11 @@ class SeveralLoads(Record):
 
 
 Load = Annotated[_EachSingle | Annotated[SeveralLoads, Tag("several")], Discriminator(by_kind)]
+
+
+def turns_clamp(load: Load) -> bool:
+    """Whether the clamp turns."""
+    return any(isinstance(part, ClampRotation) for part in load.parts)
 
 
 def loaded_span(load: _AlongTheSpan, span_m: float) -> tuple[float, float]:

@@ -20,6 +20,7 @@ import pandas as pd
 from flexsurr.beam import ModalBasis, chain, tip_position, tip_twist
 from flexsurr.beam.kinematics import configuration, tip_up
 from flexsurr.beam.loads import Forces, Part, acting, load_parts
+from flexsurr.config.load import turns_clamp
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import EvaluationSettings, Variant
 from flexsurr.simulation.rhs import Array
@@ -84,9 +85,12 @@ def learn_forces(
 ) -> LearnedForces:
     """The forced response's load, learned at `eta` (k, r); even powers alone where `held_out` (l, r) allows.
 
-    Raises ValueError where a coordinate does not vary over the samples, or where the load moves no mode.
+    Raises ValueError where a coordinate does not vary over the samples, where the load moves no mode, and
+    where the clamp turns.
     """
     settings = evaluation.learned_load
+    if turns_clamp(evaluation.load):
+        raise ValueError("load: what a turning clamp exerts depends on rates; allowed: a load that does not")
     parts = load_parts(basis.structure, evaluation.load)
     kinematics = learn_kinematics(basis, eta, settings.kinematics_degree)
     if not np.max(np.abs(exact_forces(basis, parts, held_out))) > _ROUNDING * _reach(basis, parts):

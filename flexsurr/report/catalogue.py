@@ -62,6 +62,9 @@ SAMPLES = ("samples",)
 OF_FIELDS = (*SIMULATED, *FILES)
 EVERY_SOURCE = (*OF_FIELDS, *SAMPLES)
 
+LEARNED_LOADS = "learned_loads-*"
+"""What is read of learned loads."""
+
 OF_AIRCRAFT = frozenset({"free_modes", "lattice", "doublet"})
 """What is read of the aircraft of a study of samples."""
 
@@ -134,7 +137,7 @@ TABLES: dict[str, Product] = {
     "architectures": Product("Every architecture in every setting", ("metrics",), sources=OF_FIELDS),
     "seeds": Product("Mean and spread over seeds", ("metrics",), sources=OF_FIELDS),
     "cost": Product("Cost and accuracy", ("cost-*",), sources=(*SIMULATED, *SAMPLES)),
-    "learned_loads": Product("Learned loads", ("learned_loads-*",)),
+    "learned_loads": Product("Learned loads", (LEARNED_LOADS,)),
     "rollout_errors": Product("Errors of rollouts", ("rollouts",), sources=FILES),
     "rollout_cost": Product("Cost of rollouts", ("rollout_cost",), sources=FILES),
     "airliner_accuracy": Product("Accuracy of the coefficients", ("accuracy",), sources=SAMPLES),

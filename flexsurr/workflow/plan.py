@@ -7,6 +7,7 @@ from functools import cached_property
 from pathlib import Path
 
 from flexsurr.config.errors import ConfigurationError
+from flexsurr.config.load import turns_clamp
 from flexsurr.config.settings import Configuration
 from flexsurr.config.sources import AnyStudy, ResolvedSampleStudy, ResolvedStudy
 from flexsurr.report.catalogue import FIGURES, OF_AIRCRAFT, TABLES, Product
@@ -30,6 +31,8 @@ def _plan_of(study: AnyStudy) -> AnyPlan:
         case ResolvedStudy():
             if not study.structure.plain:
                 _check(study)
+            if turns_clamp(study.study.evaluation.load):
+                _check_load(study)
             return TrajectoryPlan(study)
         case ResolvedSampleStudy():
             return SamplePlan(study)
@@ -44,6 +47,15 @@ def _check(study: ResolvedStudy) -> None:
         check_structure(study.structure)
     except ValueError as error:
         raise ConfigurationError([f"{study.study.structure}: {error}"]) from None
+
+
+def _check_load(study: ResolvedStudy) -> None:
+    from flexsurr.beam.soundness import check_load  # likewise
+
+    try:
+        check_load(study.structure, study.study.evaluation.load)
+    except ValueError as error:
+        raise ConfigurationError([f"{study.name}: evaluation.load: {error}"]) from None
 
 
 class Plan:

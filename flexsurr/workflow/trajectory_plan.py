@@ -3,11 +3,12 @@
 from collections.abc import Mapping, Sequence
 
 from flexsurr.config.errors import ConfigurationError
+from flexsurr.config.load import turns_clamp
 from flexsurr.config.schema import values_of
 from flexsurr.config.sources import ResolvedStudy
 from flexsurr.config.study import DEFAULT, Study
 from flexsurr.config.trial import Trial
-from flexsurr.report.catalogue import Product
+from flexsurr.report.catalogue import LEARNED_LOADS, Product
 from flexsurr.workflow.study_plan import FieldPlan, Job, data_folder, digest, trials_of
 
 RESPONSE_KINDS = ("free", "forced")
@@ -166,6 +167,11 @@ class TrajectoryPlan(FieldPlan):
         return data_folder(variant, self.resolved.study.evaluation.learned_load.dataset)
 
     @property
+    def learns_load(self) -> bool:
+        """Whether a map of η can tell the load's generalised forces: not those of a turning clamp."""
+        return not turns_clamp(self.resolved.study.evaluation.load)
+
+    @property
     def evaluation(self) -> dict[str, list[str]]:
         """The names of the files that its evaluation makes, by the rule that makes them."""
         made: dict[str, list[str]] = {
@@ -176,13 +182,15 @@ class TrajectoryPlan(FieldPlan):
         for variant in self.variants:
             made["responses"] += [f"response-{variant}-{response}" for response in DRAWN_RESPONSES]
             made["responses"].append(f"energy-{variant}")
-            made["learn_load"].append(f"learned_loads-{variant}")
+            if self.learns_load:
+                made["learn_load"].append(f"learned_loads-{variant}")
             made["evaluate"] += [f"cost-{variant}-{response}" for response in RESPONSE_KINDS]
         return made
 
     def shows(self, product: Product) -> bool:
-        """Whether a figure or table is made of this study: some are of some structures alone."""
-        return super().shows(product) and product.shows(self.resolved.structure)
+        """Whether a figure or table is made of this study: some are of some structures or loads alone."""
+        made = self.learns_load or LEARNED_LOADS not in product.reads
+        return made and super().shows(product) and product.shows(self.resolved.structure)
 
     def values_for(self, product: Product) -> Job:
         """The structure too, where a figure draws it."""

@@ -63,7 +63,7 @@ rule evaluate:
         selection=f"{RESULTS}/selected/{{study}}.json",
         loads=lambda w: (
             [rules.learn_load.output.polynomial, rules.learn_load.output.network]
-            if w.response == "forced"
+            if w.response == "forced" and plan.studies[w.study].learns_load
             else []
         ),
     output:
