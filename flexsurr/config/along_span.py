@@ -174,6 +174,11 @@ def _read_csv(path: Path, shown: str) -> dict[str, list[float]]:
     ]
     problems += [f"{shown}: {name}: is there twice" for name in sorted(set(names)) if names.count(name) > 1]
     columns: dict[str, list[float]] = {name: [] for name in names}
+    counts = {len(cells) for _, cells in rows[1:]}
+    if len(rows) > 2 and len(counts) == 1 and counts != {len(names)}:
+        raise ConfigurationError(
+            [*problems, f"{shown}: {len(names)} names above {counts.pop()} columns; allowed: one for each"]
+        )
     for number, cells in rows[1:]:
         if len(cells) != len(names):
             problems.append(f"{shown}: line {number}: {len(cells)} values; allowed: {len(names)}")

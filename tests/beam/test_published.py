@@ -109,7 +109,7 @@ def bend_as_a_rod():
         return found.y[:3, -1] - tip
 
     unloaded = radius * np.array([np.sin(np.pi / 4.0), 1.0 - np.cos(np.pi / 4.0), 0.0])
-    solved = root(miss, unloaded + [-23.0, -13.0, 53.0])
+    solved = root(miss, np.add(unloaded, [-23.0, -13.0, 53.0]))
     assert np.abs(solved.fun).max() < 1e-7
     return solved.x - unloaded
 

@@ -115,6 +115,7 @@ def test_a_mistake_is_one_line_with_its_key(tmp_path, values, parts):
             ["line 3: mass_per_length_kg_m: 'heavy'", "a number"],
         ),
         ("stations_m,mass_per_length_kg_m\n0,1\n2\n", ["line 3: 1 values; allowed: 2"]),
+        ("stations_m\n0,1\n2,1\n", ["1 names above 2 columns; allowed: one for each"]),
         ("stations_m,chord_m\n0,1\n2,1\n", ["mass_per_length_kg_m: needed"]),
         ("mass_per_length_kg_m\n1\n1\n", ["stations_m: 0 stations"]),
     ],
