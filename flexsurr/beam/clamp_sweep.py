@@ -91,7 +91,7 @@ def tilt(kernel, t):
 
 @njit(fastmath=FLOATING_POINT, error_model="numpy", cache=True)
 def clamp_forces(kernel, t, bodies, velocities, spins):
-    """Put what the masses and elements feel in place of their velocities (3 N,) and own spins (3 N,)."""
+    """Put what the masses and elements feel in place of their velocities (3 N,) and spins (3 N,)."""
     n = kernel.masses.shape[0]
     factor, growth = history_factor(kernel.history, 0, t), history_slope(kernel.history, 0, t)
     w = factor * kernel.rate[0], factor * kernel.rate[1], factor * kernel.rate[2]
@@ -108,7 +108,7 @@ def clamp_forces(kernel, t, bodies, velocities, spins):
             v[k] = kernel.masses[i] * (g[k] - e[k] - c[k])
         if kernel.exact:
             tensor, s = kernel.tensors[i], spins[3 * i : 3 * (i + 1)]
-            spin = s[0], s[1], s[2]
+            spin = along_own_axes(b, (s[0], s[1], s[2]))
             clamp, faster = along_own_axes(b, w), along_own_axes(b, dw)
             carried = crossed(spin, clamp)
             whole = clamp[0] + spin[0], clamp[1] + spin[1], clamp[2] + spin[2]
@@ -137,7 +137,8 @@ def clamp_turned_rhs(kernel, t, x, dx, work):
     if not kernel.exact:
         spins = spins[:0]
     # An untyped 0 would compile the sweep once more, for that number alone.
-    sweep_body_velocities(bodies, np.int64(0), rates, scratch[:0], velocities, spins)
+    axial = kernel.elements.axial
+    sweep_body_velocities(bodies, axial, np.int64(0), rates, scratch[:0], velocities, spins)
     clamp_forces(kernel, t, bodies, velocities, spins)
     for i in range(4 * n):
         forces[i] = 0.0

@@ -16,6 +16,7 @@ from flexsurr.beam.planar_sweep import PlanarChain, PlanarMode, padded_length, p
 from flexsurr.beam.projection import Projection
 from flexsurr.beam.rigid_sweep import RigidChain, RigidElements, rigid_work_size
 from flexsurr.beam.spatial_sweep import SpatialChain, spatial_work_size
+from flexsurr.config.structure import JOINTS
 from flexsurr.simulation.history import histories_kernel
 from flexsurr.simulation.rhs import Array, evaluate
 
@@ -113,8 +114,7 @@ def rigid_kernel(projection: Projection, gyroscopic: bool) -> RigidChain:
     """The kernel of any coordinates of any chain."""
     beam = chain(projection.structure)
     modes = all_joints(projection)
-    tensors = own_inertia(beam)
-    squares, axes = np.linalg.eigh(tensors)
+    squares, axes = np.linalg.eigh(own_inertia(beam))
     roots = np.sqrt(np.maximum(squares, 0.0))[:, :, None] * np.swapaxes(axes, 1, 2)
     inertia = projection.modes.T @ rotary_inertia(projection.structure) @ projection.modes
     return RigidChain(
@@ -123,7 +123,6 @@ def rigid_kernel(projection: Projection, gyroscopic: bool) -> RigidChain:
         elements=rigid_elements(beam),
         masses=own(beam.masses),
         root_masses=own(np.sqrt(beam.masses)),
-        tensors=tensors,
         root_tensors=own(roots),
         weights=own(beam.masses[:, None] * beam.gravity),
         unloaded=np.zeros((beam.elements, 3)),
@@ -173,6 +172,7 @@ def rigid_elements(beam: Chain) -> RigidElements:
         arms=own(beam.arms),
         bent=bent,
         by_vector=beam.by_vector,
+        axial=bool(np.any(beam.rows >= JOINTS.index("axial") * beam.elements)),
     )
 
 

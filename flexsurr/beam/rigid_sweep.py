@@ -32,8 +32,9 @@ class RigidElements(NamedTuple):
     stretches: Array  # (N, 3) unit vectors
     middles: Array  # (N, 3) [m]
     arms: Array  # (N, 3) to the centre of gravity [m]
-    bent: bool
+    bent: bool  # otherwise all lie along the element's x
     by_vector: bool
+    axial: bool  # whether the axial joints move
 
 
 class RigidChain(NamedTuple):
@@ -44,8 +45,7 @@ class RigidChain(NamedTuple):
     elements: RigidElements
     masses: Array  # (N,) [kg]
     root_masses: Array  # (N,) √m
-    tensors: Array  # (N, 3, 3) I, inertia about the centres of gravity [kg m²]
-    root_tensors: Array  # (N, 3, 3) A with AᵀA = I
+    root_tensors: Array  # (N, 3, 3) A with AᵀA = I, the inertia about the centres of gravity [kg m²]
     weights: Array  # (N, 3) [N]
     unloaded: Array  # (N, 3) zeros: no force on the middles
     rotary_inertia: Array  # (r, r) constant
@@ -58,7 +58,7 @@ class RigidChain(NamedTuple):
 
 def rigid_work_size(elements: int, coordinates: int) -> int:
     """Scratch of `rigid_chain_rhs`."""
-    return (BODY + 20 + 6 * coordinates) * elements + coordinates**2
+    return (BODY + 29 + 6 * coordinates) * elements + coordinates**2
 
 
 @njit(fastmath=FLOATING_POINT, error_model="numpy", forceinline=True, cache=True)
@@ -172,24 +172,32 @@ def sweep_bodies(modes, elements, x, bodies, work):
         b[18], b[19], b[20] = x0, x1, x2
         b[21], b[22], b[23] = y0, y1, y2
         b[24], b[25], b[26] = z0, z1, z2
-        put(b, 9, 18, elements.stretches[i])
-        put(b, 12, 18, elements.spans[i])
         put(b, 15, 18, elements.arms[i])
-        put(b, 27, 18, elements.middles[i])
-        stretch = joints[3 * n + i]
-        for k in range(3):
-            moved = stretch * b[9 + k]
-            b[12 + k] += moved
-            b[15 + k] += moved
-            b[27 + k] += moved
+        if elements.bent:
+            put(b, 9, 18, elements.stretches[i])
+            put(b, 12, 18, elements.spans[i])
+            put(b, 27, 18, elements.middles[i])
+        else:
+            length = elements.spans[i, 0]
+            for k in range(3):
+                along = b[18 + k]
+                b[9 + k], b[12 + k], b[27 + k] = along, length * along, 0.5 * length * along
+        if elements.axial:
+            stretch = joints[3 * n + i]
+            for k in range(3):
+                moved = stretch * b[9 + k]
+                b[12 + k] += moved
+                b[15 + k] += moved
+                b[27 + k] += moved
 
 
 @njit(fastmath=FLOATING_POINT, error_model="numpy", cache=True)
-def sweep_body_velocities(bodies, first, rates, roots, masses, turning):
+def sweep_body_velocities(bodies, axial, first, rates, roots, masses, turning):
     """Velocities of the centres of gravity (3 N,) for joint rates (4 N,) that are zero before `first`.
 
-    `roots` (6 N,) takes, if it is long enough, the angular velocity and the velocity with which each
-    element's root moves; `turning` (3 N,) likewise the elements' angular velocities in their own frames.
+    Without `axial` those of the axial joints are. `roots` (6 N,) takes, if it is long enough, the angular
+    velocity and the velocity with which each element's root moves; `turning` (3 N,) likewise the elements'
+    angular velocities.
     """
     n = masses.shape[0] // 3
     keep, turns = roots.shape[0] > 0, turning.shape[0] > 0
@@ -204,20 +212,20 @@ def sweep_body_velocities(bodies, first, rates, roots, masses, turning):
         if keep:
             kept = roots[6 * i : 6 * (i + 1)]
             kept[0], kept[1], kept[2], kept[3], kept[4], kept[5] = w0, w1, w2, v0, v1, v2
-        psi, theta, phi, stretch = rates[i], rates[n + i], rates[2 * n + i], rates[3 * n + i]
+        psi, theta, phi = rates[i], rates[n + i], rates[2 * n + i]
         w0 += psi * b[0] + theta * b[3] + phi * b[6]
         w1 += psi * b[1] + theta * b[4] + phi * b[7]
         w2 += psi * b[2] + theta * b[5] + phi * b[8]
-        v0, v1, v2 = v0 + stretch * b[9], v1 + stretch * b[10], v2 + stretch * b[11]
+        if axial:
+            stretch = rates[3 * n + i]
+            v0, v1, v2 = v0 + stretch * b[9], v1 + stretch * b[10], v2 + stretch * b[11]
         out = masses[3 * i : 3 * (i + 1)]
         out[0] = v0 + w1 * b[17] - w2 * b[16]
         out[1] = v1 + w2 * b[15] - w0 * b[17]
         out[2] = v2 + w0 * b[16] - w1 * b[15]
         if turns:
             spin = turning[3 * i : 3 * (i + 1)]
-            spin[0] = w0 * b[18] + w1 * b[19] + w2 * b[20]
-            spin[1] = w0 * b[21] + w1 * b[22] + w2 * b[23]
-            spin[2] = w0 * b[24] + w1 * b[25] + w2 * b[26]
+            spin[0], spin[1], spin[2] = w0, w1, w2
         v0, v1, v2 = (
             v0 + w1 * b[14] - w2 * b[13],
             v1 + w2 * b[12] - w0 * b[14],
@@ -249,7 +257,27 @@ def add_forces_on_bodies(bodies, weights, on_middles, on_tip, forces):
 
 
 @njit(fastmath=FLOATING_POINT, error_model="numpy", cache=True)
-def add_gyroscopic_forces_of_bodies(kernel, bodies, rates, roots, masses, turning, forces):
+def turn_inertia(root_tensors, bodies, turned):
+    """Write the roots of the inertia in the common frame (9 N,): B with BᵀB = R I Rᵀ, B = A Rᵀ."""
+    for i in range(root_tensors.shape[0]):
+        b, a, out = bodies[BODY * i : BODY * (i + 1)], root_tensors[i], turned[9 * i : 9 * (i + 1)]
+        for j in range(3):
+            for k in range(3):
+                out[3 * j + k] = a[j, 0] * b[18 + k] + a[j, 1] * b[21 + k] + a[j, 2] * b[24 + k]
+
+
+@njit(fastmath=FLOATING_POINT, error_model="numpy", forceinline=True, cache=True)
+def weighted_spin(root, w0, w1, w2):
+    """B w of a root (9,) of an element's inertia."""
+    return (
+        root[0] * w0 + root[1] * w1 + root[2] * w2,
+        root[3] * w0 + root[4] * w1 + root[5] * w2,
+        root[6] * w0 + root[7] * w1 + root[8] * w2,
+    )
+
+
+@njit(fastmath=FLOATING_POINT, error_model="numpy", cache=True)
+def add_gyroscopic_forces_of_bodies(kernel, bodies, inertia, rates, roots, masses, turning, forces):
     """Add ½ ∂/∂q (q̇ᵀ M q̇) to `forces` (4 N,), from what the sweep of velocities found for the rates."""
     n = masses.shape[0] // 3
     p0 = p1 = p2 = l0 = l1 = l2 = 0.0
@@ -265,13 +293,11 @@ def add_gyroscopic_forces_of_bodies(kernel, bodies, rates, roots, masses, turnin
         l1 += b[14] * p0 - b[12] * p2 + b[17] * g0 - b[15] * g2
         l2 += b[12] * p1 - b[13] * p0 + b[15] * g1 - b[16] * g0
         if kernel.exact:
-            t, w = kernel.tensors[i], turning[3 * i : 3 * (i + 1)]
-            h0 = t[0, 0] * w[0] + t[0, 1] * w[1] + t[0, 2] * w[2]
-            h1 = t[1, 0] * w[0] + t[1, 1] * w[1] + t[1, 2] * w[2]
-            h2 = t[2, 0] * w[0] + t[2, 1] * w[1] + t[2, 2] * w[2]
-            l0 += h0 * b[18] + h1 * b[21] + h2 * b[24]
-            l1 += h0 * b[19] + h1 * b[22] + h2 * b[25]
-            l2 += h0 * b[20] + h1 * b[23] + h2 * b[26]
+            a, w = inertia[9 * i : 9 * (i + 1)], turning[3 * i : 3 * (i + 1)]
+            h0, h1, h2 = weighted_spin(a, w[0], w[1], w[2])
+            l0 += h0 * a[0] + h1 * a[3] + h2 * a[6]
+            l1 += h0 * a[1] + h1 * a[4] + h2 * a[7]
+            l2 += h0 * a[2] + h1 * a[5] + h2 * a[8]
         p0, p1, p2 = p0 + g0, p1 + g1, p2 + g2
         c0, c1, c2 = root[4] * p2 - root[5] * p1, root[5] * p0 - root[3] * p2, root[3] * p1 - root[4] * p0
         w0, w1, w2 = root[0], root[1], root[2]
@@ -307,12 +333,13 @@ def add_gyroscopic_forces_of_bodies(kernel, bodies, rates, roots, masses, turnin
             k0, k1, k2 = l1 * w2 - l2 * w1 - c0, l2 * w0 - l0 * w2 - c1, l0 * w1 - l1 * w0 - c2
             forces[2 * n + i] += b[6] * k0 + b[7] * k1 + b[8] * k2
             w0, w1, w2 = w0 + phi * b[6], w1 + phi * b[7], w2 + phi * b[8]
-        k0, k1, k2 = p1 * w2 - p2 * w1, p2 * w0 - p0 * w2, p0 * w1 - p1 * w0
-        forces[3 * n + i] += b[9] * k0 + b[10] * k1 + b[11] * k2
+        if kernel.elements.axial:
+            k0, k1, k2 = p1 * w2 - p2 * w1, p2 * w0 - p0 * w2, p0 * w1 - p1 * w0
+            forces[3 * n + i] += b[9] * k0 + b[10] * k1 + b[11] * k2
 
 
 @njit(fastmath=FLOATING_POINT, error_model="numpy", cache=True)
-def weigh(kernel, first, column):
+def weigh(kernel, inertia, first, column):
     """Multiply a column of velocities (3 N,), and of spins (3 N,) if any, by the roots of their inertia."""
     n = kernel.masses.shape[0]
     for i in range(first, n):
@@ -321,10 +348,9 @@ def weigh(kernel, first, column):
             column[k] *= root
     if kernel.exact:
         for i in range(first, n):
-            spin, a = column[3 * (n + i) : 3 * (n + i + 1)], kernel.root_tensors[i]
-            w0, w1, w2 = spin[0], spin[1], spin[2]
-            for k in range(3):
-                spin[k] = a[k, 0] * w0 + a[k, 1] * w1 + a[k, 2] * w2
+            spin = column[3 * (n + i) : 3 * (n + i + 1)]
+            root = inertia[9 * i : 9 * (i + 1)]
+            spin[0], spin[1], spin[2] = weighted_spin(root, spin[0], spin[1], spin[2])
 
 
 @implements_rhs(RigidChain, inline=False)
@@ -335,15 +361,20 @@ def rigid_chain_rhs(kernel, t, x, dx, work):
     bodies, jacobian = work[: BODY * n], work[BODY * n : (BODY + 6 * r) * n]
     scratch = work[(BODY + 6 * r) * n :]
     rates, masses, turning = scratch[: 4 * n], scratch[4 * n : 7 * n], scratch[7 * n : 10 * n]
-    roots, forces, mass = scratch[10 * n : 16 * n], scratch[16 * n : 20 * n], scratch[20 * n :]
+    roots, forces, inertia = scratch[10 * n : 16 * n], scratch[16 * n : 20 * n], scratch[20 * n : 29 * n]
+    mass = scratch[29 * n :]
     rows = 6 * n if kernel.exact else 3 * n
+    axial = kernel.elements.axial
     sweep_bodies(kernel.modes, kernel.elements, x, bodies, scratch)
+    if kernel.exact:
+        turn_inertia(kernel.root_tensors, bodies, inertia)
     for k in range(r):
         column = jacobian[rows * k : rows * (k + 1)]
+        first = kernel.first[k]
         sweep_body_velocities(
-            bodies, kernel.first[k], kernel.modes[k], scratch[:0], column[: 3 * n], column[3 * n :]
+            bodies, axial, first, kernel.modes[k], scratch[:0], column[: 3 * n], column[3 * n :]
         )
-        weigh(kernel, kernel.first[k], column)
+        weigh(kernel, inertia, first, column)
         for j in range(k + 1):
             total = kernel.rotary_inertia[k, j]
             other = jacobian[rows * j : rows * (j + 1)]
@@ -371,6 +402,6 @@ def rigid_chain_rhs(kernel, t, x, dx, work):
         joint_values(kernel.modes, dx, rates)
         spins = turning if kernel.exact else turning[:0]
         # An untyped 0 would compile the sweep once more, for that number alone.
-        sweep_body_velocities(bodies, np.int64(0), rates, roots, masses, spins)
-        add_gyroscopic_forces_of_bodies(kernel, bodies, rates, roots, masses, spins, forces)
+        sweep_body_velocities(bodies, axial, np.int64(0), rates, roots, masses, spins)
+        add_gyroscopic_forces_of_bodies(kernel, bodies, inertia, rates, roots, masses, spins, forces)
     add_projected(kernel.modes, forces, dx)

@@ -41,8 +41,8 @@ class Moving:
     """A figure with a panel for each motion, and what moves in it.
 
     `motions` maps the name of a model to its nodes (m, N + 1, 3) [m] at times `t` (m,) [s]; one that ended
-    early has fewer rows. The first is the reference, which stands grey behind the others. A motion in the
-    plane of x and z is seen from the side, any other in space.
+    early has fewer rows, and its panel says so. The first is the reference, which stands grey behind the
+    others. A motion in the plane of x and z is seen from the side, any other in space.
     """
 
     def __init__(self, motions: Mapping[str, Array], t: Array, title: str) -> None:
@@ -55,6 +55,9 @@ class Moving:
         # placed once, for all frames
         self.figure.canvas.draw()
         self.figure.set_layout_engine("none")
+        if not self.flat:  # what lays a figure out does not see the labels of axes in space
+            for k, ax in enumerate(self.figure.axes):
+                ax.set_position(((k + 0.02) / len(self.shown), 0.04, 0.8 / len(self.shown), 0.82))
 
     @property
     def frames(self) -> int:
@@ -70,9 +73,10 @@ class Moving:
         middle, half = 0.5 * (low + high), np.maximum(0.55 * (high - low), 0.15 * (high - low).max())
         limits = [(m - h, m + h) for m, h in zip(middle, half, strict=True)]
         self.lines: list[tuple[str, Any, Any]] = []
+        self.titles: list[tuple[str, Any]] = []
         for ax, name in zip(grid, self.shown, strict=True):
             self._frame(ax, limits)
-            ax.set_title(_called(name), loc="left")
+            self.titles.append((name, ax.set_title(_called(name), loc="left")))
             for drawn in dict.fromkeys((self.reference, name)):
                 behind = drawn == self.reference and name != self.reference
                 style = (
@@ -84,7 +88,8 @@ class Moving:
                 (line,) = ax.plot(*empty, "o-", markersize=2.0, **style)
                 (trail,) = ax.plot(*empty, color=style["color"], linewidth=0.6)
                 self.lines.append((drawn, line, trail))
-        figure.suptitle(self.title, x=0.01, ha="left", fontsize=8)
+        behind = f"  (grey: {_called(self.reference)})" if self.shown != [self.reference] else ""
+        figure.suptitle(self.title + behind, x=0.01, ha="left", fontsize=8)
         self.clock = figure.text(0.99, 0.98, "", ha="right", va="top", fontsize=8)
         return figure
 
@@ -92,10 +97,15 @@ class Moving:
         if self.flat:
             ax.set(xlabel="x [m]", ylabel="z [m]", xlim=limits[0], ylim=limits[2], aspect="equal")
             return
-        ax.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
+        ax.set_xlabel("x [m]", labelpad=0.0)
+        ax.set_ylabel("y [m]", labelpad=-4.0)
+        ax.set_zlabel("z [m]", labelpad=-8.0)
+        ax.tick_params(pad=0.0)
         ax.set(xlim=limits[0], ylim=limits[1], zlim=limits[2])
-        ax.set_box_aspect([high - low for low, high in limits])
-        ax.locator_params(nbins=4)
+        ax.set_box_aspect([high - low for low, high in limits], zoom=1.2)
+        for axis, sides in ((ax.xaxis, limits[0]), (ax.yaxis, limits[1]), (ax.zaxis, limits[2])):
+            short = np.ptp(sides) < 0.5 * max(np.ptp(each) for each in limits)
+            axis.get_major_locator().set_params(nbins=2 if short else 4)
 
     def show(self, frame: int) -> list[Any]:
         """Move everything to one of the times; a motion that has ended stays where it was."""
@@ -104,6 +114,10 @@ class Moving:
             at = min(frame, len(nodes) - 1)
             self._place(line, nodes[at])
             self._place(trail, nodes[max(0, at - TRAIL) : at + 1, -1])
+        for name, title in self.titles:
+            last = len(self.motions[name]) - 1
+            ended = f", ended at {self.t[last]:.3g} s" if frame > last else ""
+            title.set_text(_called(name) + ended)
         self.clock.set_text(f"{self.t[frame]:.3g} s")
         return [self.clock]
 

@@ -46,8 +46,24 @@ def test_every_line_is_where_its_model_is(sideways):
 def test_a_motion_that_ended_early_stays_where_it_was():
     motions = {"reference": swinging(), "mlp": swinging(times=T[:3])}
     moving = Moving(motions, T, "rod")
+    (ax,) = moving.figure.axes
+    moving.show(2)
+    assert ax.get_title(loc="left") == "MLP"
     moving.show(5)
     np.testing.assert_array_equal(moving.lines[1][1].get_ydata(), motions["mlp"][2, :, 2])
+    assert ax.get_title(loc="left") == f"MLP, ended at {T[2]:.3g} s"
+
+
+def test_labels_in_space_lie_within_the_picture_and_the_reference_is_named():
+    moving = Moving({"rom": swinging(0.0, 0.5), "hnn": swinging(0.1, 0.5)}, T, "rod")
+    assert moving.figure.get_suptitle() == "rod  (grey: reduced order)"
+    moving.figure.canvas.draw()
+    (ax,) = moving.figure.axes
+    whole = moving.figure.bbox
+    for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
+        box = axis.label.get_window_extent()
+        assert whole.x0 <= box.x0 < box.x1 <= whole.x1
+        assert whole.y0 <= box.y0 < box.y1 <= whole.y1
 
 
 def test_a_gif_has_a_picture_for_every_time_and_they_differ(tmp_path):
