@@ -57,7 +57,7 @@ class Moving:
         self.figure.set_layout_engine("none")
         if not self.flat:  # what lays a figure out does not see the labels of axes in space
             for k, ax in enumerate(self.figure.axes):
-                ax.set_position(((k + 0.02) / len(self.shown), 0.04, 0.8 / len(self.shown), 0.82))
+                ax.set_position(((k + 0.02) / len(self.shown), 0.08, 0.8 / len(self.shown), 0.78))
 
     @property
     def frames(self) -> int:
@@ -102,7 +102,7 @@ class Moving:
         ax.set_zlabel("z [m]", labelpad=-8.0)
         ax.tick_params(pad=0.0)
         ax.set(xlim=limits[0], ylim=limits[1], zlim=limits[2])
-        ax.set_box_aspect([high - low for low, high in limits], zoom=1.2)
+        ax.set_box_aspect([high - low for low, high in limits], zoom=1.1)
         for axis, sides in ((ax.xaxis, limits[0]), (ax.yaxis, limits[1]), (ax.zaxis, limits[2])):
             short = np.ptp(sides) < 0.5 * max(np.ptp(each) for each in limits)
             axis.get_major_locator().set_params(nbins=2 if short else 4)

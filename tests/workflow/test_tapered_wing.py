@@ -1,4 +1,4 @@
-"""A structure of one's own from end to end: the tapered wing with its engine, to tables, figures and report."""
+"""A structure of one's own from end to end: the tapered wing, to tables, figures and report."""
 
 import json
 
