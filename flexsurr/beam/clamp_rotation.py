@@ -110,7 +110,7 @@ def turning_clamp(structure: Structure, loads: Sequence[Single]) -> TurningClamp
     if rotation is None:
         return None
     beam = chain(structure)
-    if beam.torsion_inertia.any():
+    if "torsion" in structure.joints and beam.torsion_inertia.any():
         raise ValueError(
             "clamp_rotation: rotary_inertia is constant, which a turning clamp does not turn; allowed: exact"
         )

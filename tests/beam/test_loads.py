@@ -1,5 +1,6 @@
 import re
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +9,7 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import ValidationError
-from scipy.integrate import quad, solve_bvp
+from scipy.integrate import fixed_quad, quad, solve_bvp
 from structures import (
     ALL_JOINTS,
     CANTILEVER,
@@ -38,7 +39,16 @@ from flexsurr.beam.chain import chain
 from flexsurr.beam.equilibrium import static_residual, tangent_stiffness
 from flexsurr.beam.kinematics import configuration
 from flexsurr.beam.loads import Forces, Part, acting, load_breakpoints, load_ends_s, load_parts
-from flexsurr.config.history import Constant, OneMinusCosine, Power, Ramp, Sine, Table, with_table
+from flexsurr.config.history import (
+    Constant,
+    OneMinusCosine,
+    Power,
+    Ramp,
+    Sine,
+    SmoothRamp,
+    Table,
+    with_table,
+)
 from flexsurr.config.load import (
     ClampAcceleration,
     DistributedForce,
@@ -52,7 +62,18 @@ from flexsurr.config.load import (
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Integrator
 from flexsurr.simulation import CompiledModel, simulate
-from flexsurr.simulation.history import breakpoints, end_s, factor, histories_kernel, history_factor
+from flexsurr.simulation.history import (
+    breakpoints,
+    end_s,
+    factor,
+    histories_kernel,
+    history_factor,
+    history_integral,
+    history_slope,
+    integral,
+    slope,
+    start_s,
+)
 
 KINDS = ("described", "numpy", "compiled")
 VECTORS = st.tuples(*[st.floats(-20.0, 20.0)] * 3).filter(any)
@@ -62,6 +83,7 @@ HISTORIES = st.one_of(
     st.floats(0.1, 50.0).map(lambda w: Sine(frequency_rad_s=w, phase_rad=0.3, end_s=2.0)),
     st.integers(1, 4).map(lambda n: Power(exponent=n, reference_s=0.8, start_s=0.5)),
     st.floats(0.1, 3.0).map(lambda rise: Ramp(start_s=0.4, rise_s=rise)),
+    st.floats(0.1, 3.0).map(lambda rise: SmoothRamp(start_s=0.3, rise_s=rise, end_s=2.8)),
     st.floats(0.5, 3.0).map(lambda duration: OneMinusCosine(start_s=0.2, duration_s=duration)),
     st.floats(0.1, 9.0).map(lambda w: Table(times_s=TIMES, factors=np.cos(w * TIMES), start_s=0.1)),
 )
@@ -408,6 +430,28 @@ def test_histories_are_the_same_compiled(histories, t):
     kernel = histories_kernel(histories)
     for k, history in enumerate(histories):
         assert history_factor(kernel, k, t) == pytest.approx(factor(history, t), rel=1e-12, abs=1e-13)
+        assert history_slope(kernel, k, t) == pytest.approx(slope(history, t), rel=1e-11, abs=1e-11)
+        assert history_integral(kernel, k, t) == pytest.approx(integral(history, t), rel=1e-11, abs=1e-12)
+
+
+@given(HISTORIES, st.floats(0.01, 3.5))
+def test_slope_and_integral_of_a_history_are_those_of_its_factor(history, t):
+    def area(low, high):
+        low, high = max(low, start_s(history)), min(high, end_s(history))
+        inside = [*breakpoints(history), *(TIMES if isinstance(history, Table) else ())]
+        knots = [low, *sorted(time for time in inside if low < time < high), high]
+        pieces = pairwise(knots)
+        # inside of each piece, so that nothing is seen of a jump at its end
+        return sum(
+            fixed_quad(np.vectorize(lambda s: factor(history, s)), a, b, n=40)[0] for a, b in pieces if b > a
+        )
+
+    assert integral(history, t) == pytest.approx(area(0.0, t), rel=1e-8, abs=1e-10)
+    near = [t - 1e-6, t + 1e-6]
+    within = start_s(history) < near[0] and near[1] < end_s(history)
+    if within and not any(near[0] <= time <= near[1] for time in (*breakpoints(history), *TIMES)):
+        rise = factor(history, near[1]) - factor(history, near[0])
+        assert slope(history, t) == pytest.approx(rise / 2e-6, rel=1e-5, abs=1e-5)
 
 
 def test_a_bump_integrates_to_its_impulse():
@@ -482,6 +526,10 @@ def test_histories_are_what_their_names_say():
     ramp = Ramp(start_s=1.0, rise_s=2.0, end_s=5.0)
     assert [factor(ramp, t) for t in (0.9, 1.0, 2.0, 3.0, 4.9, 5.0)] == [0.0, 0.0, 0.5, 1.0, 1.0, 0.0]
     assert breakpoints(ramp) == (1.0, 3.0, 5.0)
+    smooth = SmoothRamp(start_s=1.0, rise_s=2.0)
+    assert [factor(smooth, t) for t in (0.9, 1.0, 2.0, 3.0, 4.0)] == pytest.approx([0.0, 0.0, 0.5, 1.0, 1.0])
+    assert [slope(smooth, t) for t in (1.0, 2.0, 3.0)] == pytest.approx([0.0, 1.0, 0.0])
+    assert breakpoints(smooth) == (1.0, 3.0)
     bump = OneMinusCosine(start_s=1.0, duration_s=2.0)
     assert [factor(bump, t) for t in (0.9, 1.0, 2.0, 3.0)] == pytest.approx([0.0, 0.0, 1.0, 0.0])
     assert (breakpoints(bump), end_s(bump)) == ((1.0, 3.0), 3.0)

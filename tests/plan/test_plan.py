@@ -298,3 +298,24 @@ def test_a_structure_that_buckles_under_its_own_weight_is_refused_before_any_job
         change(root, STRUCTURE, key, value)
     with pytest.raises(ConfigurationError, match=f"{STRUCTURE}: gravity_m_s2: .*buckles under"):
         plan(root)
+
+
+def test_of_a_turning_clamp_no_load_is_learned(root):
+    turning = {"kind": "clamp_rotation", "rate_rad_s": 2.0, "history": {"kind": "smooth_ramp", "rise_s": 0.1}}
+    change(root, STUDY, "evaluation.load", turning)
+    p = plan(root)
+    assert beam(p).evaluation["learn_load"] == []
+    assert "learned_loads" not in p.tables(BEAM)
+    assert "cost" in p.tables(BEAM)
+
+
+def test_a_clamp_that_would_turn_at_once_is_refused_before_any_job(root):
+    turning = {
+        "kind": "clamp_rotation",
+        "rate_rad_s": 2.0,
+        "history": {"kind": "ramp", "rise_s": 9, "end_s": 1},
+    }
+    change(root, STUDY, "evaluation.load", turning)
+    with pytest.raises(ConfigurationError) as caught:
+        plan(root)
+    assert [line for line in str(caught.value).splitlines() if "the clamp's rate jumps at 1 s" in line]
