@@ -11,7 +11,7 @@ from flexsurr.beam.chain import Chain, chain, rotary_inertia
 from flexsurr.beam.clamp_rotation import TurningClamp
 from flexsurr.beam.clamp_sweep import ClampTurned
 from flexsurr.beam.dynamics import BeamModel
-from flexsurr.beam.planar import Plane, is_planar, plane
+from flexsurr.beam.planar import is_planar, plane
 from flexsurr.beam.planar_sweep import PlanarChain, PlanarMode, padded_length, planar_work_size
 from flexsurr.beam.projection import Projection
 from flexsurr.beam.rigid_sweep import RigidChain, RigidElements, rigid_work_size
@@ -58,15 +58,12 @@ def planar_mode_kernel(projection: Projection, gyroscopic: bool) -> PlanarMode:
     """The kernel of a single coordinate of a chain in a plane."""
     frame = plane(projection)
     slopes = frame.slopes[:, 0]
-    behind, ahead = hops(frame, np.array([slopes, slopes**2]))
+    about_roots = frame.masses @ frame.levers**2
     return PlanarMode(
         slopes=padded(slopes),
-        behind=padded(behind),
-        ahead=padded(ahead),
-        weights=padded(frame.weights * slopes),
-        masses=padded(frame.masses),
-        elements=len(slopes),
-        inertia=float(frame.rotary_inertia[0, 0]),
+        moments=own(frame.element_length * (frame.masses @ frame.levers)),
+        weights=own(frame.weights),
+        inertia=float(frame.rotary_inertia[0, 0] + about_roots @ slopes**2),
         stiffness=float(projection.stiffness[0, 0]),
         damping=float(projection.damping[0, 0]),
         gyroscopic=gyroscopic,
@@ -77,28 +74,18 @@ def planar_mode_kernel(projection: Projection, gyroscopic: bool) -> PlanarMode:
 def planar_kernel(projection: Projection, gyroscopic: bool) -> PlanarChain:
     """The kernel of any coordinates of a chain in a plane."""
     frame = plane(projection)
-    behind, ahead = hops(frame, frame.slopes.T)
     return PlanarChain(
         slopes=padded(frame.slopes.T),
-        behind=padded(behind),
-        ahead=padded(ahead),
-        element_length=frame.element_length,
+        arms=own(frame.element_length * frame.slopes.T),
         weights=own(frame.weights),
         root_masses=own(np.sqrt(frame.masses)),
+        root_arms=own(frame.element_length * np.sqrt(frame.masses)),
         places=own(np.diagonal(frame.levers) / frame.element_length),
         inertia=own(frame.rotary_inertia),
         stiffness=own(projection.stiffness),
         damping=own(projection.damping),
         gyroscopic=gyroscopic,
     )
-
-
-def hops(frame: Plane, slopes: Array) -> tuple[Array, Array]:
-    """What leads from each mass to the next, times `slopes` (k, N): in the element before, and in its own."""
-    places = np.diagonal(frame.levers)
-    behind = np.zeros_like(slopes)
-    behind[:, 1:] = (frame.element_length - places[:-1]) * slopes[:, :-1]
-    return behind, places * slopes
 
 
 def spatial_kernel(projection: Projection, gyroscopic: bool) -> SpatialChain:

@@ -1,9 +1,7 @@
 """Compiled equations of a chain in a plane: its absolute angles, one sweep out, one sweep back.
 
 Rows over the elements are padded with zeros to P, a multiple of `LANES`, so that the sines and cosines
-fill whole vector registers; N is the true number of elements. The columns of the Jacobian are running sums
-of hops, each from one mass to the next: past the rest of the element before, and along its own. Hops need
-nothing of one another, so they fill registers too; what is left for the sweep are additions.
+fill whole vector registers; N is the true number of elements.
 """
 
 from typing import NamedTuple
@@ -20,13 +18,10 @@ LANES = 4  # doubles in a 256-bit register
 class PlanarMode(NamedTuple):
     """One mode of a chain in a plane: states (η, p)."""
 
-    slopes: Array  # (P,) absolute angles for η = 1
-    behind: Array  # (2, P) of each hop the part in the element before [m], and its slope times that
-    ahead: Array  # (2, P) and the part in its own, likewise
-    weights: Array  # (2, P) moment arms of gravity times the slopes [N m]
-    masses: Array  # (P,) [kg]
-    elements: int  # N
-    inertia: float  # rotary [kg m²]
+    slopes: Array  # (P,) S, absolute angles for η = 1
+    moments: Array  # (N,) l Σ m A over the masses from each element outwards [kg m²]
+    weights: Array  # (2, N) moment arms of gravity [N m]
+    inertia: float  # of each element about its own root, and rotary [kg m²]
     stiffness: float
     damping: float
     gyroscopic: bool
@@ -37,11 +32,10 @@ class PlanarChain(NamedTuple):
     """Any coordinates of a chain in a plane: states (η_1…η_r, p_1…p_r)."""
 
     slopes: Array  # (r, P) absolute angles for each η
-    behind: Array  # (r, P) of each hop the part in the element before [m], for each η
-    ahead: Array  # (r, P) and the part in its own
-    element_length: float  # [m]
+    arms: Array  # (r, N) l times the slopes [m]
     weights: Array  # (2, N) moment arms of gravity [N m]
     root_masses: Array  # (N,) roots of the masses [kg½]
+    root_arms: Array  # (N,) l times these
     places: Array  # (N,) where each lies, as part of the element's length
     inertia: Array  # (r, r) rotary [kg m²]
     stiffness: Array  # (r, r)
@@ -51,41 +45,38 @@ class PlanarChain(NamedTuple):
 
 @implements_rhs(PlanarMode)
 def planar_mode_rhs(kernel, t, x, dx, work):
-    """Eq. 10 for one mode: the gyroscopic term is η̇² Σ m J·J′ with J′ the tangent's own tangent."""
+    """Eq. 10 for one mode. With e_i = S_i (−sin θ_i, cos θ_i) an element carries all outboard along l e_i.
+
+    So two elements share l Σ m A of the outer one, whatever lies between, and
+
+        M = I + 2 Σ c_i e_i · Σ_{j<i} e_j,     ½ dM/dη = Σ c_i (e_i turned by 90°) · Σ_{j<i} (S_i − S_j) e_j.
+    """
     eta = x[0]
-    padded = kernel.slopes.shape[0]
-    sine, cosine = work[: padded + 1], work[padded + 1 : 2 * padded + 2]  # an element before the first, too
-    hops = work[2 * padded + 2 : 6 * padded + 2]
-    along, normal = hops[:padded], hops[padded : 2 * padded]
-    along_2, normal_2 = hops[2 * padded : 3 * padded], hops[3 * padded :]
-    sine[0] = cosine[0] = 0.0
+    slopes, moments = kernel.slopes, kernel.moments
+    padded, n = slopes.shape[0], moments.shape[0]
+    along, normal = work[:padded], work[padded : 2 * padded]
     for i in range(padded):
-        sine[i + 1], cosine[i + 1] = sine_cosine(kernel.slopes[i] * eta)
-    for i in range(padded):
-        behind, ahead = kernel.behind[0, i], kernel.ahead[0, i]
-        behind_2, ahead_2 = kernel.behind[1, i], kernel.ahead[1, i]
-        along[i] = behind * sine[i] + ahead * sine[i + 1]
-        normal[i] = behind * cosine[i] + ahead * cosine[i + 1]
-        along_2[i] = behind_2 * sine[i] + ahead_2 * sine[i + 1]
-        normal_2[i] = behind_2 * cosine[i] + ahead_2 * cosine[i + 1]
-    # J is (−along, normal) and J′ is (−normal_2, −along_2). Two sums each, for they are chains of additions.
+        sine, cosine = sine_cosine(slopes[i] * eta)
+        along[i], normal[i] = slopes[i] * sine, slopes[i] * cosine
+    # Two sums each, for they are chains of additions.
     inertia = inertia_2 = slope = slope_2 = 0.0
-    at_along = at_normal = at_along_2 = at_normal_2 = 0.0
-    for i in range(kernel.elements):
-        at_along += along[i]
-        at_normal += normal[i]
-        at_along_2 += along_2[i]
-        at_normal_2 += normal_2[i]
-        weighted_along, weighted_normal = kernel.masses[i] * at_along, kernel.masses[i] * at_normal
-        inertia += weighted_along * at_along
-        inertia_2 += weighted_normal * at_normal
-        slope += weighted_along * at_normal_2
-        slope_2 += weighted_normal * at_along_2
+    sum_along = sum_normal = weighted_along = weighted_normal = 0.0
+    for i in range(n):
+        a, b, s = along[i], normal[i], slopes[i]
+        of_a, of_b = moments[i] * a, moments[i] * b
+        inertia += of_a * sum_along
+        inertia_2 += of_b * sum_normal
+        slope += of_b * (s * sum_along - weighted_along)
+        slope_2 += of_a * (s * sum_normal - weighted_normal)
+        sum_along += a
+        sum_normal += b
+        weighted_along += s * a
+        weighted_normal += s * b
     weight = 0.0
     if kernel.heavy:
-        for i in range(padded):
-            weight += kernel.weights[1, i] * cosine[i + 1] - kernel.weights[0, i] * sine[i + 1]
-    rate = x[1] / (kernel.inertia + (inertia + inertia_2))
+        for i in range(n):
+            weight += kernel.weights[1, i] * normal[i] - kernel.weights[0, i] * along[i]
+    rate = x[1] / (kernel.inertia + 2.0 * (inertia + inertia_2))
     force = weight - kernel.stiffness * eta - kernel.damping * rate
     if kernel.gyroscopic:
         force += (slope - slope_2) * rate * rate
@@ -100,7 +91,7 @@ def padded_length(elements: int) -> int:
 
 def planar_work_size(elements: int, coordinates: int) -> int:
     """Scratch of `planar_chain_rhs`."""
-    return 6 * padded_length(elements) + 2 + 2 * coordinates * elements + coordinates**2
+    return 6 * padded_length(elements) + 2 * coordinates * elements + coordinates**2
 
 
 @implements_rhs(PlanarChain, inline=False)
@@ -108,28 +99,22 @@ def planar_chain_rhs(kernel, t, x, dx, work):
     """Eqs. 6, 7 and 10 in a plane."""
     r, padded = kernel.slopes.shape
     n = kernel.weights.shape[1]
-    # an element before the first, too
-    sines, cosines = work[: padded + 1], work[padded + 1 : 2 * padded + 2]
-    sine, cosine = sines[1:], cosines[1:]
-    turning, scratch = work[2 * padded + 2 : 2 * padded + 2 + n], work[3 * padded + 2 :]
+    sine, cosine, turning = work[:padded], work[padded : 2 * padded], work[2 * padded : 2 * padded + n]
+    scratch = work[3 * padded :]
     spin, along, normal = scratch[:n], scratch[n : 2 * n], scratch[2 * n : 3 * n]
     jacobian = scratch[3 * n : 3 * n + 2 * r * n]
     mass = scratch[3 * n + 2 * r * n :]
-    sines[0] = cosines[0] = 0.0
     planar_angles(kernel.slopes, x, sine, cosine)
 
-    length = kernel.element_length
     for k in range(r):
         column = jacobian[2 * n * k : 2 * n * (k + 1)]
-        behind, ahead = kernel.behind[k], kernel.ahead[k]
-        for i in range(n):
-            column[i] = -behind[i] * sines[i] - ahead[i] * sines[i + 1]
-            column[n + i] = behind[i] * cosines[i] + ahead[i] * cosines[i + 1]
         u = w = 0.0
         for i in range(n):
-            u += column[i]
-            w += column[n + i]
-            column[i], column[n + i] = kernel.root_masses[i] * u, kernel.root_masses[i] * w
+            step_u, step_w = -kernel.arms[k, i] * sine[i], kernel.arms[k, i] * cosine[i]
+            place, root = kernel.places[i], kernel.root_masses[i]
+            column[i], column[n + i] = root * (u + place * step_u), root * (w + place * step_w)
+            u += step_u
+            w += step_w
         for j in range(k + 1):
             other = jacobian[2 * n * j : 2 * n * (j + 1)]
             total = 0.0
@@ -151,7 +136,7 @@ def planar_chain_rhs(kernel, t, x, dx, work):
                 normal[i] += jacobian[2 * n * k + n + i] * dx[k]
         u = w = 0.0  # momentum outboard, per element length
         for i in range(n - 1, -1, -1):
-            place, root = kernel.places[i], length * kernel.root_masses[i]
+            place, root = kernel.places[i], kernel.root_arms[i]
             step_u, step_w = root * along[i], root * normal[i]
             turning[i] -= spin[i] * (cosine[i] * (u + place * step_u) + sine[i] * (w + place * step_w))
             u += step_u

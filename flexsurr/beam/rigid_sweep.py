@@ -69,6 +69,24 @@ def put(out, start, frame, vector):
         out[start + k] = a * out[frame + k] + b * out[frame + 3 + k] + c * out[frame + 6 + k]
 
 
+@njit(fastmath=FLOATING_POINT, error_model="numpy", forceinline=True, cache=True)
+def turned_row(x, y, z, u0, u1, u2, c1, c2, c3):
+    """A row v of a frame before turned by u, v R, and that of the axes of φ, θ and ψ, v R T.
+
+    R T is Tᵀ (see `rotation_vector`): both are sums of v, v [u] = v × u, and that times [u] again.
+    """
+    o0, o1, o2 = y * u2 - z * u1, z * u0 - x * u2, x * u1 - y * u0
+    t0, t1, t2 = o1 * u2 - o2 * u1, o2 * u0 - o0 * u2, o0 * u1 - o1 * u0
+    return (
+        x + c1 * o0 + c2 * t0,
+        y + c1 * o1 + c2 * t1,
+        z + c1 * o2 + c2 * t2,
+        x + c2 * o0 + c3 * t0,
+        -(y + c2 * o1 + c3 * t1),
+        z + c2 * o2 + c3 * t2,
+    )
+
+
 @njit(fastmath=FLOATING_POINT, error_model="numpy", cache=True)
 def sweep_bodies(modes, elements, x, bodies, work):
     """Write the bodies (BODY N,) of the chain at η = x[:r]; `work` is scratch of 10 N."""
@@ -111,46 +129,9 @@ def sweep_bodies(modes, elements, x, bodies, work):
             c4, c5 = one[i], other[i]
             c2, c3 = 0.5 - s * c4, 1.0 / 6.0 - s * c5
             c1 = 1.0 - s * c3
-            s0, s1, s2 = u0 * u0 - s, u1 * u1 - s, u2 * u2 - s
-            p0, p1, p2 = u1 * u2, u0 * u2, u0 * u1
-            a00, a11, a22 = 1.0 + c2 * s0, 1.0 + c2 * s1, 1.0 + c2 * s2
-            a01, a10 = c2 * p2 - c1 * u2, c2 * p2 + c1 * u2
-            a02, a20 = c2 * p1 + c1 * u1, c2 * p1 - c1 * u1
-            a12, a21 = c2 * p0 - c1 * u0, c2 * p0 + c1 * u0
-            x0, y0, z0 = (
-                x0 * a00 + y0 * a10 + z0 * a20,
-                x0 * a01 + y0 * a11 + z0 * a21,
-                x0 * a02 + y0 * a12 + z0 * a22,
-            )
-            x1, y1, z1 = (
-                x1 * a00 + y1 * a10 + z1 * a20,
-                x1 * a01 + y1 * a11 + z1 * a21,
-                x1 * a02 + y1 * a12 + z1 * a22,
-            )
-            x2, y2, z2 = (
-                x2 * a00 + y2 * a10 + z2 * a20,
-                x2 * a01 + y2 * a11 + z2 * a21,
-                x2 * a02 + y2 * a12 + z2 * a22,
-            )
-            a00, a11, a22 = 1.0 + c3 * s0, 1.0 + c3 * s1, 1.0 + c3 * s2
-            a01, a10 = c3 * p2 + c2 * u2, c3 * p2 - c2 * u2
-            a02, a20 = c3 * p1 - c2 * u1, c3 * p1 + c2 * u1
-            a12, a21 = c3 * p0 + c2 * u0, c3 * p0 - c2 * u0
-            b[0], b[1], b[2] = (
-                x0 * a02 + y0 * a12 + z0 * a22,
-                x1 * a02 + y1 * a12 + z1 * a22,
-                x2 * a02 + y2 * a12 + z2 * a22,
-            )
-            b[3], b[4], b[5] = (
-                -(x0 * a01 + y0 * a11 + z0 * a21),
-                -(x1 * a01 + y1 * a11 + z1 * a21),
-                -(x2 * a01 + y2 * a11 + z2 * a21),
-            )
-            b[6], b[7], b[8] = (
-                x0 * a00 + y0 * a10 + z0 * a20,
-                x1 * a00 + y1 * a10 + z1 * a20,
-                x2 * a00 + y2 * a10 + z2 * a20,
-            )
+            x0, y0, z0, b[6], b[3], b[0] = turned_row(x0, y0, z0, u0, u1, u2, c1, c2, c3)
+            x1, y1, z1, b[7], b[4], b[1] = turned_row(x1, y1, z1, u0, u1, u2, c1, c2, c3)
+            x2, y2, z2, b[8], b[5], b[2] = turned_row(x2, y2, z2, u0, u1, u2, c1, c2, c3)
             b[30], b[31], b[32] = u0, u1, u2
             b[33], b[34], b[35], b[36] = c2, c3, c4 - 0.5 * c3, 1.5 * c5 - 0.5 * c4
         else:
