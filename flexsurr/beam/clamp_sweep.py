@@ -138,7 +138,7 @@ def clamp_turned_rhs(kernel, t, x, dx, work):
         spins = spins[:0]
     # An untyped 0 would compile the sweep once more, for that number alone.
     axial = kernel.elements.axial
-    sweep_body_velocities(bodies, axial, np.int64(0), rates, scratch[:0], velocities, spins)
+    sweep_body_velocities(bodies, axial, np.int64(0), rates, velocities, spins)
     clamp_forces(kernel, t, bodies, velocities, spins)
     for i in range(4 * n):
         forces[i] = 0.0

@@ -173,15 +173,14 @@ def sweep_bodies(modes, elements, x, bodies, work):
 
 
 @njit(fastmath=FLOATING_POINT, error_model="numpy", cache=True)
-def sweep_body_velocities(bodies, axial, first, rates, roots, masses, turning):
+def sweep_body_velocities(bodies, axial, first, rates, masses, turning):
     """Velocities of the centres of gravity (3 N,) for joint rates (4 N,) that are zero before `first`.
 
-    Without `axial` those of the axial joints are. `roots` (6 N,) takes, if it is long enough, the angular
-    velocity and the velocity with which each element's root moves; `turning` (3 N,) likewise the elements'
+    Without `axial` those of the axial joints are. `turning` (3 N,) takes, if it is long enough, the elements'
     angular velocities.
     """
     n = masses.shape[0] // 3
-    keep, turns = roots.shape[0] > 0, turning.shape[0] > 0
+    turns = turning.shape[0] > 0
     w0 = w1 = w2 = v0 = v1 = v2 = 0.0
     for i in range(3 * first):
         masses[i] = 0.0
@@ -190,9 +189,6 @@ def sweep_body_velocities(bodies, axial, first, rates, roots, masses, turning):
             turning[i] = 0.0
     for i in range(first, n):
         b = bodies[BODY * i : BODY * (i + 1)]
-        if keep:
-            kept = roots[6 * i : 6 * (i + 1)]
-            kept[0], kept[1], kept[2], kept[3], kept[4], kept[5] = w0, w1, w2, v0, v1, v2
         psi, theta, phi = rates[i], rates[n + i], rates[2 * n + i]
         w0 += psi * b[0] + theta * b[3] + phi * b[6]
         w1 += psi * b[1] + theta * b[4] + phi * b[7]
@@ -207,6 +203,28 @@ def sweep_body_velocities(bodies, axial, first, rates, roots, masses, turning):
         if turns:
             spin = turning[3 * i : 3 * (i + 1)]
             spin[0], spin[1], spin[2] = w0, w1, w2
+        v0, v1, v2 = (
+            v0 + w1 * b[14] - w2 * b[13],
+            v1 + w2 * b[12] - w0 * b[14],
+            v2 + w0 * b[13] - w1 * b[12],
+        )
+
+
+@njit(fastmath=FLOATING_POINT, error_model="numpy", cache=True)
+def sweep_roots(bodies, axial, rates, roots):
+    """With which angular velocity and velocity each element's root moves (6 N,), for joint rates (4 N,)."""
+    n = roots.shape[0] // 6
+    w0 = w1 = w2 = v0 = v1 = v2 = 0.0
+    for i in range(n):
+        b, kept = bodies[BODY * i : BODY * (i + 1)], roots[6 * i : 6 * (i + 1)]
+        kept[0], kept[1], kept[2], kept[3], kept[4], kept[5] = w0, w1, w2, v0, v1, v2
+        psi, theta, phi = rates[i], rates[n + i], rates[2 * n + i]
+        w0 += psi * b[0] + theta * b[3] + phi * b[6]
+        w1 += psi * b[1] + theta * b[4] + phi * b[7]
+        w2 += psi * b[2] + theta * b[5] + phi * b[8]
+        if axial:
+            stretch = rates[3 * n + i]
+            v0, v1, v2 = v0 + stretch * b[9], v1 + stretch * b[10], v2 + stretch * b[11]
         v0, v1, v2 = (
             v0 + w1 * b[14] - w2 * b[13],
             v1 + w2 * b[12] - w0 * b[14],
@@ -247,35 +265,28 @@ def turn_inertia(root_tensors, bodies, turned):
                 out[3 * j + k] = a[j, 0] * b[18 + k] + a[j, 1] * b[21 + k] + a[j, 2] * b[24 + k]
 
 
-@njit(fastmath=FLOATING_POINT, error_model="numpy", forceinline=True, cache=True)
-def weighted_spin(root, w0, w1, w2):
-    """B w of a root (9,) of an element's inertia."""
-    return (
-        root[0] * w0 + root[1] * w1 + root[2] * w2,
-        root[3] * w0 + root[4] * w1 + root[5] * w2,
-        root[6] * w0 + root[7] * w1 + root[8] * w2,
-    )
-
-
 @njit(fastmath=FLOATING_POINT, error_model="numpy", cache=True)
-def add_gyroscopic_forces_of_bodies(kernel, bodies, inertia, rates, roots, masses, turning, forces):
-    """Add ½ ∂/∂q (q̇ᵀ M q̇) to `forces` (4 N,), from what the sweep of velocities found for the rates."""
-    n = masses.shape[0] // 3
+def add_gyroscopic_forces_of_bodies(kernel, bodies, inertia, rates, roots, motion, forces):
+    """Add ½ ∂/∂q (q̇ᵀ M q̇) to `forces` (4 N,), for joint rates (4 N,).
+
+    `roots` is what `sweep_roots` found, `motion` the weighted velocities (3 N,) and spins (3 N,) if any.
+    """
+    n = kernel.masses.shape[0]
     p0 = p1 = p2 = l0 = l1 = l2 = 0.0
     for i in range(n - 1, -1, -1):
         b, v, root = (
             bodies[BODY * i : BODY * (i + 1)],
-            masses[3 * i : 3 * (i + 1)],
+            motion[3 * i : 3 * (i + 1)],
             roots[6 * i : 6 * (i + 1)],
         )
-        mass = kernel.masses[i]
+        mass = kernel.root_masses[i]
         g0, g1, g2 = mass * v[0], mass * v[1], mass * v[2]
         l0 += b[13] * p2 - b[14] * p1 + b[16] * g2 - b[17] * g1
         l1 += b[14] * p0 - b[12] * p2 + b[17] * g0 - b[15] * g2
         l2 += b[12] * p1 - b[13] * p0 + b[15] * g1 - b[16] * g0
         if kernel.exact:
-            a, w = inertia[9 * i : 9 * (i + 1)], turning[3 * i : 3 * (i + 1)]
-            h0, h1, h2 = weighted_spin(a, w[0], w[1], w[2])
+            a, h = inertia[9 * i : 9 * (i + 1)], motion[3 * (n + i) : 3 * (n + i + 1)]
+            h0, h1, h2 = h[0], h[1], h[2]
             l0 += h0 * a[0] + h1 * a[3] + h2 * a[6]
             l1 += h0 * a[1] + h1 * a[4] + h2 * a[7]
             l2 += h0 * a[2] + h1 * a[5] + h2 * a[8]
@@ -329,9 +340,10 @@ def weigh(kernel, inertia, first, column):
             column[k] *= root
     if kernel.exact:
         for i in range(first, n):
-            spin = column[3 * (n + i) : 3 * (n + i + 1)]
-            root = inertia[9 * i : 9 * (i + 1)]
-            spin[0], spin[1], spin[2] = weighted_spin(root, spin[0], spin[1], spin[2])
+            spin, a = column[3 * (n + i) : 3 * (n + i + 1)], inertia[9 * i : 9 * (i + 1)]
+            w0, w1, w2 = spin[0], spin[1], spin[2]
+            for k in range(3):
+                spin[k] = a[3 * k] * w0 + a[3 * k + 1] * w1 + a[3 * k + 2] * w2
 
 
 @implements_rhs(RigidChain, inline=False)
@@ -341,7 +353,7 @@ def rigid_chain_rhs(kernel, t, x, dx, work):
     n = kernel.masses.shape[0]
     bodies, jacobian = work[: BODY * n], work[BODY * n : (BODY + 6 * r) * n]
     scratch = work[(BODY + 6 * r) * n :]
-    rates, masses, turning = scratch[: 4 * n], scratch[4 * n : 7 * n], scratch[7 * n : 10 * n]
+    rates, motion = scratch[: 4 * n], scratch[4 * n : 10 * n]
     roots, forces, inertia = scratch[10 * n : 16 * n], scratch[16 * n : 20 * n], scratch[20 * n : 29 * n]
     mass = scratch[29 * n :]
     rows = 6 * n if kernel.exact else 3 * n
@@ -352,9 +364,7 @@ def rigid_chain_rhs(kernel, t, x, dx, work):
     for k in range(r):
         column = jacobian[rows * k : rows * (k + 1)]
         first = kernel.first[k]
-        sweep_body_velocities(
-            bodies, axial, first, kernel.modes[k], scratch[:0], column[: 3 * n], column[3 * n :]
-        )
+        sweep_body_velocities(bodies, axial, first, kernel.modes[k], column[: 3 * n], column[3 * n :])
         weigh(kernel, inertia, first, column)
         for j in range(k + 1):
             total = kernel.rotary_inertia[k, j]
@@ -381,8 +391,12 @@ def rigid_chain_rhs(kernel, t, x, dx, work):
         add_forces_on_bodies(bodies, kernel.weights, kernel.unloaded, kernel.unloaded[0], forces)
     if kernel.gyroscopic:
         joint_values(kernel.modes, dx, rates)
-        spins = turning if kernel.exact else turning[:0]
-        # An untyped 0 would compile the sweep once more, for that number alone.
-        sweep_body_velocities(bodies, axial, np.int64(0), rates, roots, masses, spins)
-        add_gyroscopic_forces_of_bodies(kernel, bodies, inertia, rates, roots, masses, spins, forces)
+        for i in range(rows):
+            motion[i] = 0.0
+        for k in range(r):
+            column, rate = jacobian[rows * k : rows * (k + 1)], dx[k]
+            for i in range(rows):
+                motion[i] += column[i] * rate
+        sweep_roots(bodies, axial, rates, roots)
+        add_gyroscopic_forces_of_bodies(kernel, bodies, inertia, rates, roots, motion, forces)
     add_projected(kernel.modes, forces, dx)
