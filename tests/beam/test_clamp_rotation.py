@@ -9,7 +9,7 @@ from numpy.polynomial import Polynomial
 from pydantic import ValidationError
 from scipy.integrate import solve_ivp
 from scipy.linalg import eigvalsh
-from structures import ALL_JOINTS, CANTILEVER, FORMS, SEEDS, any_structures, basis_of, change, state
+from structures import ALL_JOINTS, CANTILEVER, FORMS, JOINTS, SEEDS, any_structures, basis_of, change, state
 from test_implementations import assert_close
 from test_pinocchio import ELEMENTS, ORDER, rigid_body_model
 
@@ -47,16 +47,19 @@ def turning(structures_):
 
 
 @settings(max_examples=15)
-@given(turning(any_structures()), ROTATIONS, SEEDS)
+@given(turning(any_structures(joints=JOINTS)), ROTATIONS, SEEDS)
 def test_the_three_implementations_agree(structure, rotation, seed):
     push = TipForce(force_N=3.0, direction=(1.0, 1.0, 1.0), follows=True)
-    for system, model in ((structure, full_order), (basis_of(structure), reduced_order)):
-        for load in (rotation, SeveralLoads(loads=(push, rotation))):
-            models = [loaded(model(system, "hamiltonian", kind), system, load, kind) for kind in KINDS]
-            x = state(system, seed)
-            expected = models[0].derivative(1.0, x)
-            assert_close(models[1].derivative(1.0, x), expected)
-            assert_close(models[2].derivative(1.0, x), expected)
+    both = SeveralLoads(loads=(push, rotation))
+    for system, model, load in (
+        (structure, full_order, rotation),
+        (basis_of(structure), reduced_order, both),
+    ):
+        models = [loaded(model(system, "hamiltonian", kind), system, load, kind) for kind in KINDS]
+        x = state(system, seed)
+        expected = models[0].derivative(1.0, x)
+        assert_close(models[1].derivative(1.0, x), expected)
+        assert_close(models[2].derivative(1.0, x), expected)
 
 
 def test_they_agree_where_the_chain_stays_in_a_plane_and_has_lumps_alone():
@@ -104,7 +107,7 @@ def test_inertial_forces_are_those_of_a_driven_joint_at_the_root(form):
 def test_the_energy_in_space_grows_by_the_work_of_the_clamp(structure, rotation, seed):
     """dE/dt = ω · dL/dt − q̇ᵀ C q̇ with E and L as seen from space, L about the axis; by a complex step."""
     beam, t = chain(structure), 0.9
-    model = loaded(full_order(structure, "hamiltonian", "compiled"), structure, rotation, "compiled")
+    model = loaded(full_order(structure, "hamiltonian", "numpy"), structure, rotation, "numpy")
     x = state(structure, seed)
     dx = model.derivative(t, x)
     axis = 3.0 * np.array(rotation.direction) / np.linalg.norm(rotation.direction)
@@ -237,7 +240,7 @@ def test_the_spin_up_of_the_arm():
     spin_up = ClampRotation(rate_rad_s=6.0, history=history)
     model = loaded(full_order(structure, "hamiltonian", "compiled"), structure, spin_up, "compiled")
     t = np.linspace(0.0, 20.0, 201)
-    tight = Integrator(method="radau_iia_5", rtol=1e-6, atol=1e-9)
+    tight = Integrator(method="scipy_radau", rtol=1e-6, atol=1e-9)  # nothing of it is compiled
     aside = model.tip(simulate(model, t, np.zeros(20), tight).x)[:, 1]
 
     bending, stiffening, mass, outwards = blade(shapes=5)
