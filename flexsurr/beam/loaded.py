@@ -198,7 +198,7 @@ class CompiledLoad(LoadedModel):
     def kernel(self) -> NamedTuple:
         """The model's kernel within the load's."""
         space = self.projection
-        model = self.model.kernel
+        model: NamedTuple = self.model.kernel
         if self.clamp is not None:
             model = turned_kernel(model, space, self.clamp)
         if not self.parts:

@@ -260,9 +260,14 @@ def turn_inertia(root_tensors, bodies, turned):
     """Write the roots of the inertia in the common frame (9 N,): B with BᵀB = R I Rᵀ, B = A Rᵀ."""
     for i in range(root_tensors.shape[0]):
         b, a, out = bodies[BODY * i : BODY * (i + 1)], root_tensors[i], turned[9 * i : 9 * (i + 1)]
+        x0, x1, x2 = b[18], b[19], b[20]
+        y0, y1, y2 = b[21], b[22], b[23]
+        z0, z1, z2 = b[24], b[25], b[26]
         for j in range(3):
-            for k in range(3):
-                out[3 * j + k] = a[j, 0] * b[18 + k] + a[j, 1] * b[21 + k] + a[j, 2] * b[24 + k]
+            along_x, along_y, along_z = a[j, 0], a[j, 1], a[j, 2]
+            out[3 * j] = along_x * x0 + along_y * y0 + along_z * z0
+            out[3 * j + 1] = along_x * x1 + along_y * y1 + along_z * z1
+            out[3 * j + 2] = along_x * x2 + along_y * y2 + along_z * z2
 
 
 @njit(fastmath=FLOATING_POINT, error_model="numpy", cache=True)

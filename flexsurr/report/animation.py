@@ -88,8 +88,8 @@ class Moving:
                 (line,) = ax.plot(*empty, "o-", markersize=2.0, **style)
                 (trail,) = ax.plot(*empty, color=style["color"], linewidth=0.6)
                 self.lines.append((drawn, line, trail))
-        behind = f"  (grey: {_called(self.reference)})" if self.shown != [self.reference] else ""
-        figure.suptitle(self.title + behind, x=0.01, ha="left", fontsize=8)
+        key = f"  (grey: {_called(self.reference)})" if self.shown != [self.reference] else ""
+        figure.suptitle(self.title + key, x=0.01, ha="left", fontsize=8)
         self.clock = figure.text(0.99, 0.98, "", ha="right", va="top", fontsize=8)
         return figure
 
