@@ -278,7 +278,7 @@ class LoadedSurrogate:
         """What makes of states (k, m, d) the largest error of each tip, in percent of the largest motion."""
         assert self.saved.basis is not None
         basis, variant = self.saved.basis, cast("Variant", self.saved.variant)
-        exact = reduced_order(basis, variant, "numpy")
+        exact = reduced_order(basis, variant, "compiled")
 
         def errors(numbers: slice, x: Array) -> Array:
             found = np.full(len(x), np.inf)

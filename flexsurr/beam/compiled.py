@@ -16,9 +16,10 @@ from flexsurr.beam.planar_sweep import PlanarChain, PlanarMode, padded_length, p
 from flexsurr.beam.projection import Projection
 from flexsurr.beam.rigid_sweep import RigidChain, RigidElements, rigid_work_size
 from flexsurr.beam.spatial_sweep import SpatialChain, spatial_work_size
+from flexsurr.beam.tip_sweep import sweep_tips
 from flexsurr.config.structure import JOINTS
 from flexsurr.simulation.history import histories_kernel
-from flexsurr.simulation.rhs import Array, evaluate
+from flexsurr.simulation.rhs import Array, evaluate, rates
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +53,33 @@ class CompiledBeam(BeamModel):
         dx = np.empty_like(x)
         evaluate(self.kernel, float(t), x, dx, np.empty(self.work_size))
         return dx
+
+    def energy(self, x: Array) -> Array:
+        """As every model's; many states of real numbers by compiled code."""
+        if np.iscomplexobj(x):
+            return super().energy(x)
+        x = np.asarray(x, dtype=np.float64)
+        r = self.projection.coordinates
+        eta, momenta = x[..., :r], x[..., r:]
+        states = x.reshape(-1, 2 * r)
+        eta_rates = rates(self, np.zeros(len(states)), states)[:, :r].reshape(eta.shape)
+        kinetic = 0.5 * np.sum(momenta * eta_rates, axis=-1)
+        elastic = 0.5 * np.sum(eta * (eta @ self.projection.stiffness.T), axis=-1)
+        works = self._tips(x)[1] - self._tips(np.zeros(2 * r))[1]
+        return np.asarray(kinetic + elastic - works)
+
+    def tip(self, x: Array) -> Array:
+        """As every model's; many states of real numbers by compiled code."""
+        return super().tip(x) if np.iscomplexobj(x) else self._tips(np.asarray(x, dtype=np.float64))[0]
+
+    def _tips(self, x: Array) -> tuple[Array, Array]:
+        """Positions (..., 3) [m] of the tip, and Σ m g·r (...,) [J], at states x (..., 2r)."""
+        beam = chain(self.projection.structure)
+        states = np.ascontiguousarray(x).reshape(-1, x.shape[-1])
+        tips, works = np.empty((len(states), 3)), np.empty(len(states))
+        weights = own(beam.masses[:, None] * beam.gravity)
+        sweep_tips(all_joints(self.projection), rigid_elements(beam), weights, states, tips, works)
+        return tips.reshape(*x.shape[:-1], 3), works.reshape(x.shape[:-1])
 
 
 def planar_mode_kernel(projection: Projection, gyroscopic: bool) -> PlanarMode:

@@ -122,7 +122,7 @@ def energy_above_rest(basis: ModalBasis, variant: Variant, x: Array) -> Array:
 
     Without gravity rest is the undeformed shape, where H is 0.
     """
-    model = reduced_order(basis, variant, "numpy")
+    model = reduced_order(basis, variant, "compiled")
     return np.asarray(model.energy(x) - model.energy(rest_state(basis)))
 
 

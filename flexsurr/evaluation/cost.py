@@ -184,7 +184,7 @@ def _timed(setup: Setup, basis: ModalBasis, reference: ReferenceSolution, repeat
 def _measured(basis: ModalBasis, variant: Variant, timed: Timed) -> dict[str, Any]:
     """The row of one simulation."""
     setup, reference, trajectory = timed.setup, timed.reference, timed.trajectory
-    exact = reduced_order(basis, variant, "numpy")
+    exact = reduced_order(basis, variant, "compiled")
     own = setup.candidate.energy(trajectory.x)
     error = tip_error(reference, tip_motion(exact, trajectory.x))
     free_from_s = reference.case.free_from_s

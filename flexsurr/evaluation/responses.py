@@ -51,7 +51,7 @@ def response_table(
     case = evaluation_cases(basis, study, response)[0]
     t = sample_times(settings.duration_s, min(settings.output_step_s, DRAWN_EVERY_S))
     reference = reference_solution(basis, variant, case, t, settings.reference_integrator)
-    exact = reduced_order(basis, variant, "numpy")
+    exact = reduced_order(basis, variant, "compiled")
     states = {"reference": reference.x}
     for candidate in candidates(basis, variant, surrogates):
         if candidate.steppable and candidate.model != "rom":

@@ -58,6 +58,19 @@ def test_reduced_order_implementations_agree(structure, variant, modes, normalis
     assert_close(compiled.derivative(0.0, x), expected)
 
 
+@settings(max_examples=12)
+@given(any_structures(), st.integers(1, 4), SEEDS)
+def test_tips_and_energies_agree(structure, modes, seed):
+    basis = basis_of(structure, modes, "mass")
+    vectorised, compiled = (reduced_order(basis, "hamiltonian", kind) for kind in ("numpy", "compiled"))
+    x = np.array([[state(basis, seed + k) for k in range(3)]])
+    np.testing.assert_allclose(
+        compiled.tip(x), vectorised.tip(x), rtol=1e-11, atol=1e-11 * structure.length_m
+    )
+    expected = vectorised.energy(x)
+    np.testing.assert_allclose(compiled.energy(x), expected, rtol=1e-10, atol=1e-10 * np.abs(expected).max())
+
+
 @settings(max_examples=30)
 @given(structures(centre_of_gravity_offset_m=0.0), st.sampled_from(["in_plane", "out_of_plane"]), SEEDS)
 def test_planar_kernels_are_the_general_one(structure, joint, seed):
