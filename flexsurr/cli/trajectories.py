@@ -33,29 +33,26 @@ def simulate(job: Job, output: Path) -> None:
     model = reduced_order(basis, job["variant"], "compiled")
     states = draw_initial_conditions(basis, dataset.initial_conditions, study.seed, first, count)
     times = dataset.step_s * np.arange(round(dataset.duration_s / dataset.step_s) + 1, dtype=np.float64)
-    numbers, t, x, dx, failures = [], [], [], [], []
     responses = simulate_ensemble(model, times, states, dataset.integrator, threads=1)
-    for number, found, reason in zip(
-        range(first, first + count), responses.kept, responses.reasons, strict=True
-    ):
-        reached = int(np.isfinite(found).all(axis=1).sum())
-        of_states = rates(model, times[:reached], found[:reached])
-        kept = int(np.isfinite(of_states).all(axis=1).cumprod().sum())
-        if kept == 0:
-            raise ArithmeticError(f"trajectory {number}: its initial state is too large to have a rate")
-        if kept < reached or reason:
-            why = reason if kept == reached else "the rates left the finite numbers"
-            failures.append(f"trajectory {number}: {why} at {times[kept - 1]:g} s")
-            log.warning(failures[-1])
-        numbers.append(np.full(kept, number))
-        t.append(times[:kept])
-        x.append(found[:kept])
-        dx.append(of_states[:kept])
+    x = responses.kept
+    dx = rates(model, np.tile(times, count), x.reshape(-1, x.shape[-1])).reshape(x.shape)
+    reached = np.asarray(np.isfinite(x).all(axis=-1))
+    # up to the first sample without a state or without rates
+    kept = (reached & np.isfinite(dx).all(axis=-1)).cumprod(axis=1).astype(bool)
+    failures = []
+    for k in np.flatnonzero(~kept.all(axis=1)).tolist():
+        samples = int(kept[k].sum())
+        if samples == 0:
+            raise ArithmeticError(f"trajectory {first + k}: its initial state is too large to have a rate")
+        ended = samples == int(reached[k].sum())
+        why = responses.reasons[k] if ended else "the rates left the finite numbers"
+        failures.append(f"trajectory {first + k}: {why} at {times[samples - 1]:g} s")
+        log.warning(failures[-1])
     shard = Shard(
-        trajectory=np.concatenate(numbers),
-        t=np.concatenate(t),
-        x=np.concatenate(x),
-        dx=np.concatenate(dx),
+        trajectory=np.repeat(np.arange(first, first + count), kept.sum(axis=1)),
+        t=np.tile(times, (count, 1))[kept],
+        x=x[kept],
+        dx=dx[kept],
         metadata=ShardMetadata(
             study=job["study"],
             variant=job["variant"],
