@@ -6,27 +6,45 @@ Each table ends with the exponent of a power law that is fitted to its last thre
 logarithms: what a further doubling will cost.
 """
 
+import logging
+import resource
 import tempfile
+import time
+from pathlib import Path
 
 import numpy as np
 import yaml
 from beam_right_hand_sides import COMPILED, COMPILED_CALLS, DESCRIBED, NUMPY, caller
-from cantilever import STRUCTURE, cantilever_dataset, cantilever_model
-from timing import compare, measure
+from cantilever import STRUCTURE, cantilever_dataset
+from timing import compare
 from wing import STRUCTURE as WING
 
 from flexsurr.beam import full_order, reduce, reduced_order
+from flexsurr.cli.trajectories import simulate as simulate_shard
+from flexsurr.config.settings import load
 from flexsurr.config.structure import Structure
-from flexsurr.config.study import Integrator, Reduction
+from flexsurr.config.study import Reduction
 from flexsurr.config.trial import trial_of
-from flexsurr.simulation import simulate
+from flexsurr.surrogates import (
+    CompiledSurrogate,
+    NetworkPortHamiltonian,
+    PairScaling,
+    PolynomialPortHamiltonian,
+    compiled,
+)
+from flexsurr.surrogates.monomials import monomials_to_degree
+from flexsurr.surrogates.packed import pack, packed_size
 from flexsurr.training import fit
+from flexsurr.workflow.plan import Plan
 
 ELEMENTS = (10, 20, 40, 80, 160, 320)
 MODES = (1, 2, 4, 6, 8, 10)
 WIDTHS = (8, 16, 32, 64)
 SHARES = (0.125, 0.25, 0.5, 1.0)
-RESPONSES = (100, 1000, 10_000)
+TRAJECTORIES = (100, 10_000, 1_000_000)
+IN_A_SHARD = 10_000
+WIDTH = 64
+"""Neurons of the network of several modes."""
 REPEATS = 5
 DESCRIBED_TO = 80
 """Elements up to which the described model is timed: 320 of them take half a second a call."""
@@ -78,10 +96,41 @@ def against_modes() -> None:
             f"reduced, {kind}": caller(reduced_order(basis, "hamiltonian", kind), kind)
             for kind in (COMPILED, NUMPY)
         }
-        counts = {f"reduced, {COMPILED}": COMPILED_CALLS}
+        surrogates = {name: caller(model, COMPILED) for name, model in surrogates_of(modes).items()}
+        counts = dict.fromkeys((f"reduced, {COMPILED}", *surrogates), COMPILED_CALLS)
+        callers |= surrogates
         timings = compare(f"right-hand side, r = {modes}", callers, REPEATS, counts=counts)
         rows[modes] = {name: 1e6 * timing.median_s for name, timing in timings.items()}
     show("right-hand side of the wing, 16 elements", "modes", rows, "µs")
+
+
+def surrogates_of(modes: int) -> dict[str, CompiledSurrogate]:
+    """Surrogates of so many modes with a mass matrix near the identity; other weights make no difference."""
+    generator = np.random.default_rng(0)
+    entries, unit = packed_size(modes), pack(np.eye(modes))
+    names = tuple(f"{name}_{k}" for name in ("eta", "p") for k in range(modes))
+    common = PairScaling((1.0,) * modes, 1.0, 1.0), names, ("1",) * (2 * modes)
+    exponents = np.concatenate([np.zeros((1, modes), dtype=np.int64), monomials_to_degree(modes, 4)])
+    exponents = exponents[exponents.sum(axis=1) % 2 == 0]
+    mass = 1e-3 * generator.normal(size=(entries, len(exponents)))
+    mass[:, 0] = unit
+    coefficients = np.concatenate([mass.ravel(), unit, unit])
+    inputs = sum(int(np.prod(shape)) for shape in NetworkPortHamiltonian.shapes(modes, WIDTH, True))
+    return {
+        "polynomial, degree 4": compiled(
+            PolynomialPortHamiltonian(coefficients, *common, exponents=exponents)
+        ),
+        f"network, {WIDTH}": compiled(
+            NetworkPortHamiltonian(
+                1e-3 * generator.normal(size=inputs),
+                *common,
+                floor=unit,
+                even=True,
+                hidden=(WIDTH,),
+                activation="atan",
+            )
+        ),
+    }
 
 
 def training(size: str, sizes: dict[float, tuple[int, float]]) -> None:
@@ -107,20 +156,25 @@ def training(size: str, sizes: dict[float, tuple[int, float]]) -> None:
 
 
 def data() -> None:
-    """Free responses of 1 s, of 101 samples each, simulated one after another."""
-    model = cantilever_model("hamiltonian")
-    t = np.linspace(0.0, 1.0, 101)
-    integrator = Integrator(method="dop853_fixed", step_s=0.01)
-    starts = np.random.default_rng(0).uniform(-0.3, 0.3, (max(RESPONSES), 2)) * (1.0, 10.0)
+    """Free responses of 1 s, five samples of each, in shards as the workflow makes them, on one core."""
+    logging.disable()
+    root = Path(__file__).parents[1]
+    job = Plan(load(root, [root / "config/config.yaml"])).studies["cantilever"].simulate("hamiltonian", 0)
+    job["part"]["dataset"] |= {"duration_s": 1.0, "step_s": 0.25}
     rows = {}
-    for count in RESPONSES:
-
-        def run(count: int = count) -> None:
-            for start in starts[:count]:
-                simulate(model, t, start, integrator)
-
-        rows[count] = {"seconds": measure("datasets", f"{count} responses", run, 3, warmup=1).median_s}
-    show("a dataset of the cantilever", "responses", rows, "s")
+    for count in TRAJECTORIES:
+        with tempfile.TemporaryDirectory() as folder:
+            begin = time.perf_counter()
+            for first in range(0, count, IN_A_SHARD):
+                part = {"first": first, "count": min(IN_A_SHARD, count - first)}
+                simulate_shard(job | part, Path(folder) / f"shard-{first:07d}.parquet")
+            seconds = time.perf_counter() - begin
+            files = list(Path(folder).iterdir())
+            megabytes = sum(file.stat().st_size for file in files) / 1e6
+        # the most that this process has ever held
+        held = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
+        rows[count] = {"seconds": seconds, "files": len(files), "MB of files": megabytes, "MB held": held}
+    show("a dataset of the cantilever", "trajectories", rows, "s; MB")
 
 
 def main() -> None:

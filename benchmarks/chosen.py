@@ -1,0 +1,94 @@
+"""The surrogates of a sweep against the compiled reduced model they stand for: cost and tip error over 30 s.
+
+    python benchmarks/chosen.py
+
+Of the study's structure and of one of 160 elements, whose reduced model costs more while a surrogate's cost
+stays. All are fitted without a simulation, judged by the study's long responses, and timed in turns with the
+reduced model over one of them, by the study's first integrator and its samples.
+"""
+
+import tempfile
+from pathlib import Path
+
+import numpy as np
+import yaml
+from timing import compare
+
+from flexsurr.beam import reduce, reduced_order
+from flexsurr.config.structure import Structure
+from flexsurr.config.study import Study
+from flexsurr.config.trial import trial_of
+from flexsurr.evaluation.operations import operations
+from flexsurr.evaluation.scores import long_response_errors, long_responses
+from flexsurr.simulation import simulate
+from flexsurr.surrogates import compiled
+from flexsurr.training import fit
+from flexsurr.training.configuration_samples import configuration_samples
+
+ROOT = Path(__file__).parents[1]
+VARIANT, REPEATS = "hamiltonian", 15
+ELEMENTS = {"cantilever": (10, 160), "wing": (16, 160)}
+CONFIGURATIONS = {"cantilever": 500, "wing": 2000}
+SQUARES = {"optimiser": "least_squares"}
+EVEN = {"architecture": "even_hnn", "epochs": 400, "patience": 60}
+TRIALS = {
+    "cantilever": {
+        **{
+            f"polynomial, degree {n}": {"architecture": "polynomial", "degree": n} | SQUARES
+            for n in (4, 6, 10)
+        },
+        **{
+            f"even HNN, {n} {name}": EVEN | {"hidden": (n,), "activation": name}
+            for n in (4, 6, 8)
+            for name in ("half_log", "atan")
+        },
+        "HNN, 16 half_log": {"architecture": "hnn", "hidden": (16,), "activation": "half_log", "epochs": 400},
+    },
+    "wing": {
+        **{f"degree {n}": {"architecture": "port_hamiltonian", "degree": n} | SQUARES for n in (4, 6, 8)},
+    },
+}
+REFERENCE = "reduced model"
+
+
+def study_of(name: str) -> Study:
+    return Study.model_validate(yaml.safe_load((ROOT / f"config/studies/{name}.yaml").read_text()))
+
+
+def of_structure(name: str, elements: int) -> None:
+    study = study_of(name)
+    structure = Structure(**yaml.safe_load((ROOT / study.structure).read_text()))
+    basis = reduce(structure.model_copy(update={"elements": elements}), study.reduction)
+    samples = configuration_samples(basis, VARIANT, study.dataset.initial_conditions, CONFIGURATIONS[name])
+    references = long_responses(study, basis, VARIANT)
+    integrator = study.evaluation.integrators[0]
+    start, t = references[0].case.x0, references[0].t
+    models, errors = {REFERENCE: reduced_order(basis, VARIANT, "compiled")}, {}
+    for label, settings in TRIALS[name].items():
+        trial = trial_of(**settings, configurations=CONFIGURATIONS[name])
+        with tempfile.TemporaryDirectory() as folder:
+            surrogate = fit(trial, samples, Path(folder)).surrogate
+        models[label] = compiled(surrogate)
+        found = long_response_errors(study, basis, VARIANT, surrogate, references)
+        errors[label] = found["long_response_error_percent_worst"]
+    runs = {
+        label: lambda model=model: simulate(model, t, start, integrator) for label, model in models.items()
+    }
+    timings = compare(f"30 s of the {name}, N = {elements}", runs, REPEATS)
+    print(f"\n{name}, N = {elements}, {integrator.label}")
+    print(f"{'':<30}{'operations':>12}{'30 s':>18}{'times faster':>14}{'worst tip error %':>20}")
+    for label, model in models.items():
+        error, faster = errors.get(label, 0.0), 1.0 / timings[label].ratio
+        taken = operations(model, start)
+        error = np.inf if error is None else error
+        print(f"{label:<30}{taken:>12}{timings[label]!s:>18}{faster:>14.1f}{error:>20.2g}", flush=True)
+
+
+def main() -> None:
+    for name, sizes in ELEMENTS.items():
+        for elements in sizes:
+            of_structure(name, elements)
+
+
+if __name__ == "__main__":
+    main()
