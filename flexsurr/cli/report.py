@@ -76,8 +76,8 @@ def _text_of(caption: Path) -> str:
 def _read(read: str, job: Job, files: Sequence[Path]) -> Any:
     if read == "structure":
         return Structure.model_validate(job["structure"])
-    if read == "sweeps":
-        return job["sweeps"]
+    if read in ("sweeps", "selection"):
+        return job[read]
     if read in ("metrics", "relatives"):
         return pd.DataFrame([read_run(path) for path in files])
     if read == "history":

@@ -3,8 +3,8 @@
 from pathlib import Path
 from typing import Any
 
+from flexsurr.evaluation.selection import ERROR
 from flexsurr.storage import DamagedFile, read_json
-from flexsurr.training.selection import ERROR
 
 OF_A_RUN = ("run_id", "study", "status")
 
@@ -21,7 +21,7 @@ def read_run(path: Path) -> dict[str, Any]:
 
 
 def selected_runs(selection: Path, variant: str) -> dict[str, dict[str, Any]]:
-    """The metrics of the run of each name; the Pareto sets, which are lists, are left out."""
+    """The metrics of the run of each name, without the Pareto sets and the name that is chosen of all."""
     entries = _read_selection(selection).get(variant, {})
     return {name: entry for name, entry in entries.items() if isinstance(entry, dict)}
 
@@ -42,6 +42,8 @@ def most_accurate(selection: Path, variant: str) -> str | None:
 
 def _read_selection(path: Path) -> dict[str, dict[str, Any]]:
     """Variant -> name -> what is written of the chosen run, and under "pareto" a list of such.
+
+    Under "chosen" stands the name of the one that is chosen of all.
 
     DamagedFile for a damaged one, or that of another study.
     """

@@ -14,13 +14,19 @@ from flexsurr.config.files import FilesStudy
 from flexsurr.config.schema import part_of
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Study
+from flexsurr.evaluation.operations import counted_outputs
 from flexsurr.evaluation.rollouts import HeldOutTrajectories, rollout_errors
-from flexsurr.evaluation.scores import held_out_errors, long_response_errors, long_responses
+from flexsurr.evaluation.scores import (
+    held_out_errors,
+    long_response_errors,
+    long_responses,
+    reference_operations,
+)
+from flexsurr.evaluation.selection import choose, select_maps
+from flexsurr.evaluation.selection import select as select_fields
 from flexsurr.storage import read_manifest, write_json
-from flexsurr.surrogates import load
+from flexsurr.surrogates import load, load_map
 from flexsurr.training import load_dataset
-from flexsurr.training.selection import select as select_fields
-from flexsurr.training.selection import select_maps
 
 log = logging.getLogger(__name__)
 
@@ -81,7 +87,8 @@ def _beside_reference_of(values: str) -> Errors:
     study, variant = part_of(Study, job["part"]), job["variant"]
     basis = reduce(Structure.model_validate(job["structure"]), study.reduction)
     references = long_responses(study, basis, variant)
-    return lambda surrogate: long_response_errors(study, basis, variant, surrogate, references)
+    costs = reference_operations(basis, variant)
+    return lambda surrogate: costs | long_response_errors(study, basis, variant, surrogate, references)
 
 
 def _beside_recordings(job: Job, manifest: Path) -> Errors:
@@ -99,11 +106,15 @@ def _beside_recordings(job: Job, manifest: Path) -> Errors:
     output="its metrics",
 )
 def score_map(job: Job, fit: Path, weights: Path, best: Path, manifest: list[Path], output: Path) -> None:
-    """Score one run of a map: by its errors on held-out samples, which training has written.
+    """Score one run of a map: by its errors on held-out samples, which training has written, and its cost.
 
-    There is no `manifest` of a map; rule `accuracy` reads its weights.
+    There is no `manifest` of a map.
     """
-    write_json(output, read_run(fit))
+    metrics = read_run(fit)
+    if metrics["status"] == "finished":
+        learned = load_map(weights)
+        metrics["operations"] = counted_outputs(learned.compiled(), learned.inputs.origin)[1]
+    write_json(output, metrics)
 
 
 DEFAULT_SWEEP = "default"
@@ -116,8 +127,9 @@ def select(job: Job, runs: Path, output: Path) -> None:
     """Select the surrogates of a study that are evaluated.
 
     It follows from the metrics of the runs below `runs`. The best surrogate of the sweep `default` goes by
-    the name of its architecture (`hnn`), that of another sweep has the sweep's name added (`hnn_paper`). Of a
-    study of maps there is the best for each of the trials' labels.
+    the name of its architecture (`hnn`), that of another sweep has the sweep's name added (`hnn_paper`).
+    Under "chosen" stands the name of the one that the study's rule chooses among them all. Of a study of maps
+    there is the best for each of the trials' labels.
     """
     selection: dict[str, dict[str, Any]] = {}
     for sweep, keys in job["sweeps"].items():
@@ -126,10 +138,14 @@ def select(job: Job, runs: Path, output: Path) -> None:
             best = select_maps(records)
             selection |= {name if sweep == DEFAULT_SWEEP else f"{name}_{sweep}": best[name] for name in best}
             continue
-        for variant, chosen in select_fields(records).items():
+        for variant, chosen in select_fields(records, **job["selection"]).items():
             for name, entry in chosen.items():
                 known_as = name if sweep == DEFAULT_SWEEP else f"{name}_{sweep}"
                 selection.setdefault(variant, {})[known_as] = entry
+    if not job.get("maps"):
+        for chosen in selection.values():
+            entries = {name: entry for name, entry in chosen.items() if isinstance(entry, dict)}
+            chosen["chosen"] = choose(entries, **job["selection"])
     if job.get("maps") and selection and "network" not in selection:
         log.warning("no network of %s has finished; its %s", job["study"], SAYS_WHY)
     if not selection:

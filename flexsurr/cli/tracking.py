@@ -16,7 +16,6 @@ from flexsurr.tracking.page import Page
 from flexsurr.tracking.recording import end_sweeps, log_whole, record
 from flexsurr.tracking.run_files import RunFiles, digest, runs_by_study
 from flexsurr.tracking.store import Store, create_store, read_store, store_uri, write_store
-from flexsurr.training.selection import ERROR
 
 log = logging.getLogger(__name__)
 
@@ -143,13 +142,12 @@ def _register_one(page: Page, name: str, study: str, weights: Path, entry: Mappi
 
 
 def _chosen(selection: Path) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Of each variant the run whose long response errs least; of maps the network that flies."""
+    """Of each variant the run that the study's rule chooses; of maps the network that flies."""
     study = selection.stem
     for of_what, chosen in read_json(selection).items():
         if "run_id" in chosen:
             if of_what == MAP:
                 yield f"{study}-{MAP}", chosen
             continue
-        named = [entry for entry in chosen.values() if isinstance(entry, dict)]
-        if named:
-            yield f"{study}-{of_what}", min(named, key=lambda entry: entry[ERROR])
+        if "chosen" in chosen:
+            yield f"{study}-{of_what}", chosen[chosen["chosen"]]

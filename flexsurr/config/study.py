@@ -265,6 +265,16 @@ class Statics(Record):
     """Dead loads at the tip, positive upwards, whose deflection is held against the exact elastica [N]."""
 
 
+class Selection(Record):
+    """The rule by which a surrogate is chosen among the runs of an architecture, and among all."""
+
+    error_at_most_percent: Positive | None = None
+    """Of the runs whose worst error of long responses, or of rollouts, is at most so much, the one is chosen
+    whose right-hand side takes the fewest operations. None, or where no run errs so little: the most
+    accurate.
+    """
+
+
 class Learning(Record):
     """What every study that learns fields ẋ = f(x) has."""
 
@@ -274,6 +284,8 @@ class Learning(Record):
     """
     seed: Annotated[int, Field(ge=0)] = 2024
     """Seed of whatever is random, but for the trials' own."""
+    selection: Selection = Selection()
+    """Which surrogates are chosen."""
 
     @field_validator("sweeps", mode="before")
     @classmethod

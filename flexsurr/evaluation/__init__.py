@@ -12,7 +12,7 @@ One function per file of results/evaluation/<study>/:
 | cost-<variant>-<response>.parquet | `cost.cost_table` |
 | learned_loads-<variant>.parquet | `learned_loads.learned_load_table` |
 
-and `scores.long_response_errors`, by which training ranks its runs, `scores.held_out_errors` of their
+and `scores.long_response_errors`, by which runs are ranked (`selection`), `scores.held_out_errors` of their
 fields, `energy.energy_balance`, and `dissipative_structure.dissipative_asymmetry`, how far a field
 is from any D-HNN's. `surrogates` is always a mapping from the name of an architecture to its fitted
 surrogate.

@@ -17,8 +17,9 @@ import pandas as pd
 from flexsurr.config.study import Integrator
 from flexsurr.evaluation.candidates import surrogate_candidates
 from flexsurr.evaluation.cost import setups
+from flexsurr.evaluation.operations import operations
 from flexsurr.evaluation.timing import measuring, wall_time
-from flexsurr.simulation import Trajectory, simulate
+from flexsurr.simulation import Trajectory, simulate, simulate_ensemble
 from flexsurr.simulation.rhs import Array, Model
 from flexsurr.storage import Manifest, read_shards
 from flexsurr.surrogates import Hamiltonian, compiled
@@ -43,10 +44,13 @@ class HeldOut:
     x: Array
     u: Array | None = None
 
+    def acting_on(self, model: Model) -> Model:
+        """`model` under the same forces, if there were any."""
+        return model if self.u is None else RecordedForces(model, self.t, self.u)
+
     def followed_by(self, model: Model, t: Array, integrator: Integrator) -> Trajectory:
         """What `model` does from the first sample on, under the same forces, at times `t` (k,) [s]."""
-        under = model if self.u is None else RecordedForces(model, self.t, self.u)
-        return simulate(under, t, self.x[0], integrator)
+        return simulate(self.acting_on(model), t, self.x[0], integrator)
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,6 +78,23 @@ class HeldOutTrajectories:
         names = manifest.state_names
         spread = np.array(manifest.scales.standard_deviation[: len(names)])
         return cls(tuple(found), spread, names, manifest.state_units)
+
+    def followed_by(self, model: Model, integrator: Integrator) -> list[Array]:
+        """What `model` does from the first sample of each on: states (k, d) at the k samples that it reaches.
+
+        Those with the same times are one ensemble.
+        """
+        found: dict[int, Array] = {}
+        by_times: dict[bytes, list[HeldOut]] = {}
+        for recorded in self.trajectories:
+            by_times.setdefault(recorded.t.tobytes(), []).append(recorded)
+        for alike in by_times.values():
+            models = [recorded.acting_on(model) for recorded in alike]
+            starts = np.array([recorded.x[0] for recorded in alike])
+            rollouts = simulate_ensemble(models, alike[0].t, starts, integrator, threads=1)
+            for recorded, x in zip(alike, rollouts.kept, strict=True):
+                found[recorded.number] = x[: int(np.isfinite(x).all(axis=1).sum())]
+        return [found[recorded.number] for recorded in self.trajectories]
 
     def error_percent(self, recorded: HeldOut, x: Array) -> float:
         """Root of the mean square of (x − recorded) over the spread, over samples and states, in percent.
@@ -105,20 +126,17 @@ def rollout_table(
     """
     rows = []
     for name, surrogate in surrogates.items():
-        model = compiled(surrogate)
-        for recorded in held_out.trajectories:
-            trajectory = recorded.followed_by(model, recorded.t, integrator)
+        rollouts = held_out.followed_by(compiled(surrogate), integrator)
+        for recorded, x in zip(held_out.trajectories, rollouts, strict=True):
             rows.append(
                 {
                     "model": name,
                     "trajectory": recorded.number,
                     "samples": len(recorded.t),
                     "duration_s": recorded.t[-1] - recorded.t[0],
-                    "completed": trajectory.completed,
-                    "error_percent": held_out.error_percent(recorded, trajectory.x),
-                    "own_energy_drift_percent": held_out.own_energy_drift_percent(
-                        recorded, surrogate, trajectory.x
-                    ),
+                    "completed": len(x) == len(recorded.t),
+                    "error_percent": held_out.error_percent(recorded, x),
+                    "own_energy_drift_percent": held_out.own_energy_drift_percent(recorded, surrogate, x),
                 }
             )
     return pd.DataFrame(rows)
@@ -132,6 +150,7 @@ def rollout_errors(
     own_energy_drift_percent, the largest, stands in place of energy_drift_percent. A figure that has no
     finite value is None; a rollout that diverged counts as the worst.
     """
+    first = held_out.trajectories[0].x[0]
     table = rollout_table({"": surrogate}, held_out, integrator)
     errors = table["error_percent"].tolist()
     return {
@@ -139,6 +158,7 @@ def rollout_errors(
         "long_response_error_percent_median": _finite(statistics.median(errors)),
         "own_energy_drift_percent": _finite(table["own_energy_drift_percent"].max()),
         "diverged": int((~table["completed"]).sum()),
+        "operations": operations(compiled(surrogate), first),
     }
 
 

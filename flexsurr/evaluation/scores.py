@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from flexsurr.beam import ModalBasis, reduced_order
+from flexsurr.beam import ModalBasis, full_order, reduced_order
 from flexsurr.config.study import Study, Variant
 from flexsurr.evaluation.accuracy import tip_error
 from flexsurr.evaluation.cases import (
@@ -20,7 +20,8 @@ from flexsurr.evaluation.cases import (
     tip_motion,
 )
 from flexsurr.evaluation.energy import energy_error_percent
-from flexsurr.simulation import simulate_ensemble
+from flexsurr.evaluation.operations import operations
+from flexsurr.simulation import CompiledModel, simulate_ensemble
 from flexsurr.surrogates import compiled
 from flexsurr.training import Dataset
 from flexsurr.training.losses import FieldErrors
@@ -52,6 +53,19 @@ def long_responses(study: Study, basis: ModalBasis, variant: Variant) -> list[Re
     return list(reference_solutions(basis, variant, cases, t, settings.reference_integrator))
 
 
+def reference_operations(basis: ModalBasis, variant: Variant) -> dict[str, int | None]:
+    """What one right-hand side of the compiled reference models takes: rom_operations and fom_operations."""
+    models = {
+        "rom": reduced_order(basis, variant, "compiled"),
+        "fom": full_order(basis.structure, variant, "compiled"),
+    }
+    return {
+        f"{name}_operations": operations(model, np.zeros(len(model.state_names)))
+        for name, model in models.items()
+        if isinstance(model, CompiledModel)
+    }
+
+
 def long_response_errors(
     study: Study, basis: ModalBasis, variant: Variant, surrogate: Any, references: Iterable[ReferenceSolution]
 ) -> dict[str, float | int | None]:
@@ -59,14 +73,16 @@ def long_response_errors(
 
     Keys as in a run's metrics: long_response_error_percent_worst and _median (largest error of the
     tip's motion over the reference's largest), energy_drift_percent (worst, of the reference's exact
-    Hamiltonian along the surrogate's trajectory) and diverged, the number of responses that did not
-    reach their end. A figure that has no finite value is None; a diverged response counts as the worst.
+    Hamiltonian along the surrogate's trajectory), diverged, the number of responses that did not reach
+    their end, and operations, what one right-hand side takes. A figure that has no finite value is None; a
+    diverged response counts as the worst.
     """
     references = list(references)
-    exact = reduced_order(basis, variant, "numpy")
+    exact = reduced_order(basis, variant, "compiled")
     starts = np.array([reference.case.x0 for reference in references])
+    model = compiled(surrogate)
     responses = simulate_ensemble(
-        compiled(surrogate), references[0].t, starts, study.evaluation.judging_integrator, threads=1
+        model, references[0].t, starts, study.evaluation.judging_integrator, threads=1
     )
     errors, drifts, diverged = [], [], 0
     for reference, x, completed in zip(references, responses.kept, responses.completed, strict=True):
@@ -83,4 +99,5 @@ def long_response_errors(
         "long_response_error_percent_median": _finite(statistics.median(errors)),
         "energy_drift_percent": _finite(max(drifts)),
         "diverged": diverged,
+        "operations": operations(model, starts[0]),
     }

@@ -7,6 +7,7 @@ A product says what it `reads`, in the order of its function's arguments:
 | structure | the study's `Structure` |
 | metrics | one row for each run of the study: its metrics.json |
 | sweeps | the run_ids of each sweep of the study |
+| selection | the study's rule of choice |
 | relatives | the same of every study of the same structure |
 | history | all runs' history.parquet, with a column run_id |
 | free_modes, lattice, doublet | of the study's aircraft: modes, vortex lattice, times of a doublet |
@@ -113,6 +114,7 @@ FIGURES: dict[str, Product] = {
     "training_loss": Product("Training loss against wall time", ("history", "metrics"), sources=OF_FIELDS),
     "training_epochs": Product("Training loss against epochs", ("history", "metrics"), sources=OF_FIELDS),
     "trials": Product("Trials: settings against error", ("sweeps", "metrics"), sources=EVERY_SOURCE),
+    "pareto": Product("Cost against error of every trial", ("selection", "metrics"), sources=EVERY_SOURCE),
     "figure_16": Product("The airliner and its panels", ("free_modes", "lattice"), sources=SAMPLES),
     "figure_17": Product("Distribution of mass", ("free_modes",), sources=SAMPLES),
     "figure_18": Product("Eigenvalues in trim", ("modes",), sources=SAMPLES),

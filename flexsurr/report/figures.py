@@ -19,6 +19,7 @@ from flexsurr.report.beam_figures import figure_08, figure_09, reduced_against_f
 from flexsurr.report.cost_figures import cost_accuracy
 from flexsurr.report.energy_figures import energy_decay, energy_drift, figure_13
 from flexsurr.report.kinematic_figures import figure_03, figure_04
+from flexsurr.report.pareto_figures import pareto
 from flexsurr.report.response_figures import (
     figure_10,
     figure_12,
@@ -64,6 +65,7 @@ DRAW: dict[str, Callable[..., Figure]] = {
         training_loss,
         training_epochs,
         trials,
+        pareto,
         figure_16,
         figure_17,
         figure_18,

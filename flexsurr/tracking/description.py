@@ -19,8 +19,8 @@ Described = Mapping[str, Any]
 RUN_KEY = "flexsurr.run_id"  # the tag by which a trial is found again
 LONGEST_PARAMETER = 500
 DIGITS = 32  # of a dataset's hash: MLflow takes 36
-COUNTED = {"epochs", "epoch_limit", "best_epoch", "parameters"}
-"""Numbers in fit.json that are no measurements; the loss curve has the epochs."""
+COUNTED = {"epochs", "epoch_limit", "best_epoch", "parameters", "rom_operations", "fom_operations"}
+"""Numbers of a run that are no measurements of it; the loss curve has the epochs."""
 
 
 def tags(described: Described) -> dict[str, str]:

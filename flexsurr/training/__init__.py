@@ -1,4 +1,4 @@
-"""From datasets to fitted surrogates: optimisers, sweeps, selection.
+"""From datasets to fitted surrogates: optimisers and sweeps.
 
 A name is imported when it is asked for: the kernels take seconds that planning a sweep does not need, and
 torch takes seconds that nothing else here needs.
@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from flexsurr.training.losses import nmse
     from flexsurr.training.map_fitting import fit_map, fit_network_map, fit_polynomial_map
     from flexsurr.training.networks import torch_model
-    from flexsurr.training.selection import select
     from flexsurr.training.sweep import expand, run_id
 
 __all__ = [
@@ -29,7 +28,6 @@ __all__ = [
     "load_dataset",
     "nmse",
     "run_id",
-    "select",
     "split_dataset",
     "torch_model",
 ]
@@ -46,7 +44,6 @@ _MODULES = {
     "load_dataset": "dataset",
     "nmse": "losses",
     "run_id": "sweep",
-    "select": "selection",
     "split_dataset": "dataset",
     "torch_model": "networks",
 }

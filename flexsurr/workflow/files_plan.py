@@ -90,6 +90,11 @@ class FilesPlan(FieldPlan):
         return self.resolved.study.dataset_of(sweep)
 
     @property
+    def rule_of_choice(self) -> Job:
+        """The study's."""
+        return self.resolved.study.selection.model_dump(mode="json")
+
+    @property
     def sources(self) -> list[str]:
         """The user's files."""
         return list(self._recorded.sha256)

@@ -218,7 +218,7 @@ class Plan:
 
     def files(self, study: str, read: str) -> list[str]:
         """The files below the results that hold what a product of flexsurr.report `read`s."""
-        if read in ("structure", "sweeps") or read in OF_AIRCRAFT:
+        if read in ("structure", "sweeps", "selection") or read in OF_AIRCRAFT:
             return []
         if read == "relatives":
             return [file for name in self._relatives(study) for file in self.files(name, "metrics")]

@@ -102,7 +102,7 @@ class SamplePlan(StudyPlan):
         return self.shard_files(self.runs[key].variant)
 
     def score(self, key: str) -> Job:
-        """What training says of a fit is all that there is."""
+        """What training says of a fit, and what an evaluation takes."""
         return {"study": self.name, "run_id": key}
 
     def scored_on(self, key: str) -> list[str]:

@@ -91,6 +91,11 @@ class StudyPlan(ABC):
     def evaluation(self) -> dict[str, list[str]]:
         """The names of the files that its evaluation makes, by the rule that makes them."""
 
+    @property
+    def rule_of_choice(self) -> Job:
+        """The rule by which runs are chosen, if it has settings."""
+        return {}
+
     @abstractmethod
     def shards(self, data: str) -> int:
         """Number of shards of the data in the folder `data`."""
@@ -124,16 +129,18 @@ class StudyPlan(ABC):
         return self.commands.get(rule, rule)
 
     def select(self) -> Job:
-        """The choice among the runs of each sweep."""
-        return {"study": self.name, "sweeps": {sweep: list(runs) for sweep, runs in self.sweeps.items()}}
+        """The choice among the runs of each sweep, and its rule."""
+        sweeps = {sweep: list(runs) for sweep, runs in self.sweeps.items()}
+        return {"study": self.name, "sweeps": sweeps, "selection": self.rule_of_choice}
 
     def shows(self, product: Product) -> bool:
         """Whether a figure or table is made of this study."""
         return self.source in product.sources
 
     def values_for(self, product: Product) -> Job:
-        """What a figure or table needs besides files: which runs each sweep has, where it shows them."""
-        return {"sweeps": self.select()["sweeps"]} if "sweeps" in product.reads else {}
+        """What a figure or table needs besides files: of the choice among runs, what it shows."""
+        choice = self.select()
+        return {read: choice[read] for read in ("sweeps", "selection") if read in product.reads}
 
 
 class FieldPlan(StudyPlan):

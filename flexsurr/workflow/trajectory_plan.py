@@ -96,6 +96,11 @@ class TrajectoryPlan(FieldPlan):
         """The name of the dataset that a sweep trains on."""
         return self.resolved.study.dataset_of(sweep)
 
+    @property
+    def rule_of_choice(self) -> Job:
+        """The study's."""
+        return self.resolved.study.selection.model_dump(mode="json")
+
     def shards(self, data: str) -> int:
         """Number of shards of one dataset."""
         return self._settings(data).dataset.shards

@@ -52,7 +52,7 @@ class Results:
         scoring.score(self.job("score", key), *files, [self.dataset / "manifest.json"], run / "metrics.json")
 
     def select(self) -> None:
-        job = {"study": STUDY, "sweeps": {"default": [RUN, OTHER]}}
+        job = {"study": STUDY, "sweeps": {"default": [RUN, OTHER]}, "selection": {}}
         output = self.root / "selected" / f"{STUDY}.json"
         scoring.select(job, self.root / "runs", output)
 

@@ -117,7 +117,9 @@ def test_a_damaged_file_is_named_and_can_be_made_again(results, name, damage):
 def test_the_command_says_what_to_do(results):
     path = results.run / "metrics.json"
     halve(path, path)
-    job = write_job(results.root / "jobs", "select", {"study": STUDY, "sweeps": {"default": [RUN]}})
+    job = write_job(
+        results.root / "jobs", "select", {"study": STUDY, "sweeps": {"default": [RUN]}, "selection": {}}
+    )
     words = [sys.executable, "-m", "flexsurr", "select", "--job", str(job), "--runs"]
     words += [str(results.root / "runs"), "--output", str(results.root / "choice.json")]
     done = subprocess.run(words, cwd=REPOSITORY, capture_output=True, text=True, timeout=120)

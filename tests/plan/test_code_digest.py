@@ -146,7 +146,7 @@ def test_a_missing_module_or_function_is_named(root):
         ("manifest", "flexsurr.storage.manifest", "flexsurr.beam"),
         ("train", "flexsurr.training.fitting", "flexsurr.evaluation"),
         ("score", "flexsurr.evaluation.scores", "flexsurr.report"),
-        ("select", "flexsurr.training.selection", "flexsurr.beam"),
+        ("select", "flexsurr.evaluation.selection", "flexsurr.beam"),
         ("trials", "flexsurr.training.fitting", "flexsurr.training.map_fitting"),
         ("shards", "flexsurr.beam.compiled", "flexsurr.storage.source_files"),
         ("train-map", "flexsurr.training.map_fitting", "flexsurr.beam"),

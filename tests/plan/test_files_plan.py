@@ -175,7 +175,14 @@ def test_the_manifest_says_where_the_data_come_from(root):
 
 def test_a_structure_is_asked_of_nothing(root):
     p = plan(root)
-    assert p.figures("spring") == ["rollouts", "phase_plane", "training_loss", "training_epochs", "trials"]
+    assert p.figures("spring") == [
+        "rollouts",
+        "phase_plane",
+        "training_loss",
+        "training_epochs",
+        "trials",
+        "pareto",
+    ]
     assert p.tables("spring") == [
         "sweeps",
         "training",

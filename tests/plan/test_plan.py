@@ -88,6 +88,7 @@ CHANGES = [
     (QUICK, f"{OVER}.evaluation.described_simulations.as_printed", 2, {"cost"}),
     (QUICK, f"{OVER}.evaluation.simulations", 3, {"respond", "cost"}),
     (QUICK, f"{OVER}.evaluation.long_responses", 3, {"score"}),
+    (QUICK, f"{OVER}.selection.error_at_most_percent", 3.0, {"select"}),
     (QUICK, f"{OVER}.evaluation.duration_s", 0.3, SCORED),
     (QUICK, f"{OVER}.statics.tip_loads_N", [0, 10], {"statics"}),
     (SWEEP, "spaces.0.epochs", [21], {"train", "score", "select"}),

@@ -251,6 +251,13 @@ def metrics() -> pd.DataFrame:
                     "epochs": 10,
                     "best_epoch": 9,
                     "parameters": 20,
+                    "operations": {"polynomial": 30, "hnn": 220, "mlp": 400}[architecture],
+                    "long_response_error_percent_worst": {"polynomial": 1e-3, "hnn": 0.3, "mlp": 5.0}[
+                        architecture
+                    ],
+                    "diverged": 0,
+                    "rom_operations": 900,
+                    "fom_operations": 6000,
                     "final_loss": 1e-8,
                     "best_validation_nmse": 2e-8,
                     "wall_s": 0.2,
@@ -261,8 +268,14 @@ def metrics() -> pd.DataFrame:
                 }
             )
     rows[0] |= {"status": "failed", "train_nmse": None, "validation_nmse": None}
+    rows[0] |= {"operations": None, "long_response_error_percent_worst": None}
     rows[0] |= {"reason": "the loss is not finite after epoch 3"}
     return pd.DataFrame(rows)
+
+
+@pytest.fixture
+def selection() -> dict[str, float]:
+    return {"error_at_most_percent": 0.5}
 
 
 @pytest.fixture

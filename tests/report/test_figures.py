@@ -26,6 +26,7 @@ FIXTURES = {
     "cost-*-*": "cost",
     "metrics": "metrics",
     "sweeps": "sweeps",
+    "selection": "selection",
     "history": "history",
     "relatives": "relatives",
 }
@@ -282,3 +283,38 @@ def test_runs_without_an_end_stand_on_the_line_and_failed_ones_nowhere(request):
     # the line itself and the one run that did not end
     assert heights.count(1e3) == 2
     assert len(heights) == 6
+
+
+def test_the_rule_of_choice_is_drawn_and_the_run_that_it_chooses(request):
+    figure = draw("pareto", request)
+    (ax, _) = figure.axes
+    (ring,) = [line for line in ax.lines if line.get_markersize() == 9]
+    # of the polynomial and the network that err by less than 0.5 %, the one that takes less
+    assert ring.get_xdata().tolist() == [30.0]
+    assert any(list(line.get_ydata()) == [0.5, 0.5] for line in ax.lines)
+    assert {900.0, 6000.0} <= {line.get_xdata()[0] for line in ax.lines}
+    names = {text.get_text() for text in figure.legends[0].get_texts()}
+    assert {"chosen", "0.5 %: the rule of choice", "HNN", "polynomial H"} <= names
+
+
+def test_without_a_limit_the_most_accurate_is_chosen(metrics):
+    costly = metrics.assign(
+        operations=metrics["operations"].where(metrics["architecture"] != "polynomial", 999)
+    )
+    figure = DRAW["pareto"]({"error_at_most_percent": None}, costly)
+    (ring,) = [line for line in figure.axes[0].lines if line.get_markersize() == 9]
+    assert ring.get_ydata().tolist() == [1e-3]
+
+
+def test_maps_are_shown_by_their_validation(metrics):
+    maps = metrics.assign(variant="sobol", architecture="network").drop(
+        columns=["long_response_error_percent_worst", "diverged", "rom_operations", "fom_operations"]
+    )
+    (ax,) = DRAW["pareto"]({}, maps).axes
+    assert ax.get_ylabel() == "validation nmse"
+    assert len(ax.texts) > 0
+
+
+def test_a_study_without_a_finished_run_is_drawn(metrics):
+    figure = DRAW["pareto"]({}, metrics.assign(status="failed"))
+    assert len(figure.axes) == 2

@@ -165,6 +165,8 @@ def test_a_selection_without_its_run_registers_nothing(results, caplog):
     train(results, "hnn-1")
     (results / "selected").mkdir()
     entry = {"run_id": "hnn-gone", "long_response_error_percent_worst": 1.0}
-    (results / "selected/cantilever.json").write_text(json.dumps({"hamiltonian": {"hnn": entry}}))
+    (results / "selected/cantilever.json").write_text(
+        json.dumps({"hamiltonian": {"hnn": entry, "chosen": "hnn"}})
+    )
     track(results, sync=False, uri=None)
     assert "hnn-gone/weights.npz: cannot be read" in caplog.text

@@ -2,17 +2,16 @@
 
 import itertools
 
-from flexsurr.training import select
-from flexsurr.training.selection import select_maps
+from flexsurr.evaluation.selection import choose, select, select_maps
 
 
-def record(run, architecture="hnn", error=1.0, parameters=64, variant="hamiltonian", **more):
+def record(run, architecture="hnn", error=1.0, operations=64, variant="hamiltonian", **more):
     return {
         "run_id": run,
         "variant": variant,
         "status": "finished",
         "architecture": architecture,
-        "parameters": parameters,
+        "operations": operations,
         "long_response_error_percent_worst": error,
         "validation_nmse": 1.0,
         "diverged": 0,
@@ -20,11 +19,11 @@ def record(run, architecture="hnn", error=1.0, parameters=64, variant="hamiltoni
 
 
 RECORDS = [
-    record("small", error=3.0, parameters=16),
-    record("best", error=0.1, parameters=64, validation_nmse=1e-6),
-    record("lowest loss", error=0.5, parameters=64, validation_nmse=1e-12),
-    record("large", error=0.2, parameters=512),
-    record("plain", "mlp", error=7.0, parameters=66),
+    record("small", error=3.0, operations=16),
+    record("best", error=0.1, operations=64, validation_nmse=1e-6),
+    record("lowest loss", error=0.5, operations=64, validation_nmse=1e-12),
+    record("large", error=0.2, operations=512),
+    record("plain", "mlp", error=7.0, operations=66),
     record("other", error=9.0, variant="as_printed"),
     record("failed", status="failed", long_response_error_percent_worst=None),
     record("runs away", error=None, diverged=3),
@@ -45,15 +44,37 @@ def test_the_pareto_set_is_what_none_beats():
     assert found == ["small", "best"]
 
 
+def test_under_a_limit_the_cheapest_that_keeps_it():
+    selection = select([*RECORDS, record("cheap and plain", "mlp", error=8.0, operations=4)], 5.0)
+    assert selection["hamiltonian"]["hnn"]["run_id"] == "small"
+    # none of the others does: the most accurate
+    assert selection["hamiltonian"]["mlp"]["run_id"] == "plain"
+
+
+def test_of_all_one_is_chosen_by_the_same_rule():
+    named = {"hnn": RECORDS[1], "mlp": RECORDS[4], "hnn_paper": RECORDS[0]}
+    assert choose(named) == "hnn"
+    assert choose(named, 5.0) == "hnn_paper"
+    assert choose(named, 0.01) == "hnn"
+
+
+def test_what_calls_python_is_the_dearest():
+    python = record("python", "own", error=0.05, operations=None)
+    chosen = select([*RECORDS, python], 5.0)["hamiltonian"]
+    assert [entry["run_id"] for entry in chosen["pareto"]] == ["small", "best", "python"]
+    assert choose({"own": python, "hnn": RECORDS[1]}, 5.0) == "hnn"
+
+
 def test_order_does_not_matter():
     ties = [
         *RECORDS[:3],
-        record("a tie", error=0.1, parameters=64),
-        record("cheaper tie", error=0.1, parameters=60),
+        record("a tie", error=0.1, operations=64),
+        record("cheaper tie", error=0.1, operations=60),
     ]
-    results = [select(order) for order in itertools.permutations(ties)]
-    assert all(result == results[0] for result in results)
-    assert results[0]["hamiltonian"]["hnn"]["run_id"] == "cheaper tie"
+    for limit in (None, 0.2):
+        results = [select(order, limit) for order in itertools.permutations(ties)]
+        assert all(result == results[0] for result in results)
+        assert results[0]["hamiltonian"]["hnn"]["run_id"] == "cheaper tie"
 
 
 def test_nothing_to_choose_from():
