@@ -131,6 +131,13 @@ class PortHamiltonianNetwork(TrainedField):
     """polynomial: the potential is one, found by least squares, which knows weight and any equilibrium, as a
     structure under gravity needs. None: ½ qᵀKq.
     """
+    # left out where it is not given, as give_up below
+    mass_matrix: Literal["factored", "entries"] = Field(
+        default="factored", exclude_if=lambda value: value == "factored"
+    )
+    """What the network gives. factored: the factor of a mass matrix that is positive definite everywhere.
+    entries: the matrix itself, which it learns in less time and far more accurately.
+    """
 
     optimisers = ("levenberg_marquardt",)
 

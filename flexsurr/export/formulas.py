@@ -172,24 +172,32 @@ def _network_mass(surrogate: NetworkPortHamiltonian, q: Value) -> tuple[Value, A
     factor = take(concat([packed, [0.0]]), places)
 
     def gyroscopic(rates: Value) -> Value:
-        # Σ q̇_i (Lᵀ q̇)_j ∂L_ij/∂q
-        turned = rates @ factor
-        adjoint = ((take(rates, rows) * take(turned, columns)) @ readout) * sigma_slope(z)
-        by_inputs: Value = adjoint @ weights.T
+        # Σ q̇_i (Lᵀ q̇)_j ∂L_ij/∂q, or of the entries Σ ½ q̇_i q̇_j ∂E_ij/∂q
+        if surrogate.factored:
+            of_entries = take(rates, rows) * take(rates @ factor, columns)
+        else:
+            of_entries = _halves_of_squares(rates)
+        by_inputs: Value = ((of_entries @ readout) * sigma_slope(z)) @ weights.T
         return _by_factors(by_inputs, q) if surrogate.even else by_inputs
 
-    return take(constant(surrogate.floor), _packed_places(r)) + factor @ factor.T, gyroscopic
+    found = factor @ factor.T if surrogate.factored else take(packed, _packed_places(r))
+    return take(constant(surrogate.floor), _packed_places(r)) + found, gyroscopic
+
+
+def _halves_of_squares(rates: Value) -> Value:
+    """What each packed entry of a symmetric matrix S is multiplied by in ½ q̇ᵀ S q̇."""
+    rows, columns = rows_and_columns(rates.size)
+    result: Value = take(rates, rows) * take(rates, columns) * np.where(rows == columns, 0.5, 1.0)
+    return result
 
 
 def _polynomial_mass(surrogate: PolynomialPortHamiltonian, q: Value) -> tuple[Value, Any]:
-    r, exponents = surrogate.pairs, surrogate.exponents
-    rows, columns = rows_and_columns(r)
-    coefficients = surrogate.parameters[: -2 * len(rows)].reshape(len(rows), -1)
+    r, exponents, entries = surrogate.pairs, surrogate.exponents, surrogate.packed_size
+    coefficients = surrogate.parameters[: -2 * entries].reshape(entries, -1)
     lower, places, powers = _lowered(exponents)
 
     def gyroscopic(rates: Value) -> Value:
-        doubled = np.where(rows == columns, 0.5, 1.0)
-        weights = (take(rates, rows) * take(rates, columns) * doubled) @ coefficients
+        weights = _halves_of_squares(rates) @ coefficients
         return (take(monomials(lower, q), places) * powers) @ weights
 
     packed = monomials(exponents, q) @ coefficients.T

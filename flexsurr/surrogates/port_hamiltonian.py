@@ -96,7 +96,7 @@ class PortHamiltonian(Surrogate):
         own, work_size = self.own_kernel()
         if self.potential is None:
             return own, work_size
-        _, of_q, _, _ = self._scales()
+        _, of_q, _, _ = self.scales()
         return self.potential.beside(own, work_size, of_q, self.scaling.energy / of_q)
 
     def arrays_to_keep(self) -> dict[str, np.ndarray]:
@@ -110,22 +110,22 @@ class PortHamiltonian(Surrogate):
 
     def mass_matrix(self, q: Array) -> Array:
         """M at coordinates q (..., r), shape (..., r, r): p = M q̇ in the units of the states."""
-        _, of_q, of_p, of_rates = self._scales()
+        _, of_q, of_p, of_rates = self.scales()
         return self.scaled_mass(q / of_q) * of_p[:, None] / of_rates
 
     @property
     def stiffness(self) -> Array:
         """K (r, r): the restoring force is −K q, in the units of p per second, without a potential's."""
-        _, of_q, _, _ = self._scales()
+        _, of_q, _, _ = self.scales()
         return self.scaled_stiffness * self.scaling.energy / np.outer(of_q, of_q)
 
     @property
     def damping(self) -> Array:
         """C (r, r): the dissipative force is −C q̇, in the units of p per second."""
-        _, of_q, _, of_rates = self._scales()
+        _, of_q, _, of_rates = self.scales()
         return self.scaled_damping * self.scaling.energy / np.outer(of_q, of_rates)
 
-    def _scales(self) -> tuple[int, Array, Array, Array]:
+    def scales(self) -> tuple[int, Array, Array, Array]:
         """2r, and the scales of q, p and q̇ (r,)."""
         count, r = len(self.state_names), self.pairs
         states = self.scaling.states(count)

@@ -1,4 +1,4 @@
-"""Port-Hamiltonian surrogate whose mass matrix is M = F + L(q) L(q)ᵀ, the entries of L from a network."""
+"""Port-Hamiltonian surrogate whose mass matrix is F + E(q) or F + L(q) L(q)ᵀ, E or L from a network."""
 
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -15,18 +15,21 @@ from flexsurr.surrogates.port_hamiltonian import PortHamiltonian, springs_and_da
 
 @dataclass(frozen=True, eq=False)
 class NetworkPortHamiltonian(PortHamiltonian):
-    """L = Λ + Σ_k R_k σ(w_k · s + b_k), lower triangular; Ĉ and K̂ are products L Lᵀ of constant ones.
+    """Λ + Σ_k R_k σ(w_k · s + b_k) is L, lower triangular, or E, symmetric; Ĉ and K̂ are constant products.
 
     The inputs s are the coordinates q̂, or if `even` their packed products: then M(−q) = M(q), as it is for a
-    structure that is its own mirror image. `floor` is the packed F, positive definite and not trained, so
-    that M is positive definite everywhere and H ≥ 0. `parameters`: weights (inputs, n), biases (n,),
-    R (entries, n), Λ (entries,), the factors of K̂ and Ĉ.
+    structure that is its own mirror image. `floor` is the packed F, positive definite and not trained. If
+    `factored`, M = F + L Lᵀ is positive definite everywhere and H ≥ 0. Otherwise M = F + E, which is far more
+    accurate, for the entries of a mass matrix are smoother functions of q than those of its factor; but
+    nothing binds it to be positive definite where it was not trained. `parameters`: weights (inputs, n),
+    biases (n,), R (entries, n), Λ (entries,), the factors of K̂ and Ĉ.
     """
 
     floor: Array
     even: bool
     hidden: tuple[int, ...]
     activation: str
+    factored: bool = True
 
     def __post_init__(self) -> None:
         if len(self.hidden) != 1 or self.hidden[0] < 1:
@@ -71,7 +74,7 @@ class NetworkPortHamiltonian(PortHamiltonian):
         factor = lower(self.arrays()[5], self.pairs)
         return factor @ factor.T
 
-    def _inputs(self, q: Array) -> tuple[Array, Array]:
+    def inputs(self, q: Array) -> tuple[Array, Array]:
         """The inputs s (..., i) and their derivatives by q̂_j (..., j, i)."""
         if not self.even:
             return q, np.broadcast_to(np.eye(self.pairs), (*q.shape, self.pairs))
@@ -80,51 +83,62 @@ class NetworkPortHamiltonian(PortHamiltonian):
         by_q = q[..., None, rows] * identity[:, columns] + q[..., None, columns] * identity[:, rows]
         return q[..., rows] * q[..., columns], by_q
 
-    def _factor(self, q: Array) -> tuple[Array, Array]:
-        """L (..., r, r) and its derivatives by q̂_k (..., r, r, r), k first."""
+    def _network(self, q: Array) -> tuple[Array, Array]:
+        """L or E (..., r, r), and its derivatives by q̂_k (..., r, r, r), k first."""
         weights, biases, readout, constant, *_ = self.arrays()
-        inputs, turned = self._inputs(q)
+        inputs, turned = self.inputs(q)
         dense = Dense(self.sigma, (weights, biases), readout.T, constant)
         derivatives = turned @ np.swapaxes(dense.jacobian(inputs), -1, -2)
-        return lower(dense(inputs), self.pairs), lower(derivatives, self.pairs)
+        unpacked = lower if self.factored else symmetric
+        return unpacked(dense(inputs), self.pairs), unpacked(derivatives, self.pairs)
 
     def scaled_mass(self, q: Array) -> Array:
         """M̂ at scaled coordinates, (..., r) -> (..., r, r)."""
-        factor, _ = self._factor(q)
-        mass: Array = symmetric(self.floor, self.pairs) + factor @ np.swapaxes(factor, -1, -2)
-        return mass
+        found, _ = self._network(q)
+        if self.factored:
+            found = found @ np.swapaxes(found, -1, -2)
+        return symmetric(self.floor, self.pairs) + found
 
     def scaled_mass_derivatives(self, q: Array) -> Array:
         """∂M̂/∂q̂_k, (..., r) -> (..., r, r, r) with k first."""
-        factor, derivatives = self._factor(q)
+        factor, derivatives = self._network(q)
+        if not self.factored:
+            return derivatives
         half = derivatives @ np.swapaxes(factor, -1, -2)[..., None, :, :]
         gradient: Array = half + np.swapaxes(half, -1, -2)
         return gradient
 
     def own_kernel(self) -> tuple[NamedTuple, int]:
         """One sweep through the neurons forwards and one back, and a small system."""
-        _, of_q, of_p, of_rates = self._scales()
+        _, of_q, of_p, of_rates = self.scales()
         weights, biases, readout, constant, *_ = self.arrays()
-        # M = S (F + L Lᵀ) S with S = √(s_p / s_q̇), which a canonical scaling makes one number for each pair
-        rows, _ = np.tril_indices(self.pairs)
+        # M = S (F + …) S with S = √(s_p / s_q̇), which a canonical scaling makes one number for each pair
+        rows, columns = np.tril_indices(self.pairs)
         roots = np.sqrt(of_p / of_rates)
-        of_inputs, _ = self._inputs(of_q)
+        of_entries = roots[rows] if self.factored else roots[rows] * roots[columns]
+        of_inputs, _ = self.inputs(of_q)
         layer = np.concatenate([(weights / of_inputs[:, None]).ravel(), biases])
         kernel = NetworkPortHamiltonianKernel(
             self.sigma.tag,
             layer,
-            (readout * roots[rows][:, None]).ravel(),
-            constant * roots[rows],
+            (readout * of_entries[:, None]).ravel(),
+            constant * of_entries,
             pack(symmetric(self.floor, self.pairs) * np.outer(roots, roots)),
             np.ascontiguousarray(self.stiffness).ravel(),
             np.ascontiguousarray(self.damping).ravel(),
             self.even,
+            self.factored,
         )
         return kernel, 3 * self.hidden[0] + 3 * self.packed_size + 3 * self.pairs
 
     def settings(self) -> dict[str, Any]:
-        """Hidden layer, activation and parity; the floor is saved as an array."""
-        return {"hidden": list(self.hidden), "activation": self.activation, "even": self.even}
+        """Hidden layer, activation, parity and what the network gives; the floor is saved as an array."""
+        return {
+            "hidden": list(self.hidden),
+            "activation": self.activation,
+            "even": self.even,
+            "factored": self.factored,
+        }
 
     def arrays_to_keep(self) -> dict[str, np.ndarray]:
         """Weights and floor."""
@@ -142,16 +156,17 @@ class NetworkPortHamiltonianKernel(NamedTuple):
     stiffness: Array
     damping: Array
     even: bool
+    factored: bool
 
 
 @implements_rhs(NetworkPortHamiltonianKernel, inline=False)
 def _network_port_hamiltonian(kernel, t, x, dx, work):
-    activation, layer, readout, constant, floor, stiffness, damping, even = kernel
+    activation, layer, readout, constant, floor, stiffness, damping, even, factored = kernel
     r = offset(x.size // 2)
     entries = offset(constant.size)
     n = offset(readout.size // constant.size)
     inputs = entries if even else r
-    # work: s, then σ's arguments (later slopes), values, adjoints; L, M; q̇ and Lᵀ q̇; ∂/∂q
+    # work: s, then σ's arguments (later slopes), values, adjoints; L or E, M; q̇ and Lᵀ q̇; ∂/∂q
     z = inputs
     values = z + n
     adjoint = values + n
@@ -180,8 +195,11 @@ def _network_port_hamiltonian(kernel, t, x, dx, work):
         for j in range(i + offset(1)):
             other = factor + j * (j + offset(1)) // offset(2)
             total = floor[e]
-            for k in range(j + offset(1)):
-                total += work[row + k] * work[other + k]
+            if factored:
+                for k in range(j + offset(1)):
+                    total += work[row + k] * work[other + k]
+            else:
+                total += work[row + j]
             work[matrix + e] = total
             e += offset(1)
         work[rates + i] = x[r + i]
@@ -194,13 +212,15 @@ def _network_port_hamiltonian(kernel, t, x, dx, work):
         for j in range(i + offset(1)):
             work[turned + j] += work[e] * work[rates + i]
             e += offset(1)
-    # ½ ∂/∂q (q̇ᵀ L Lᵀ q̇) = Σ q̇_i (Lᵀ q̇)_j ∂L_ij/∂q
+    # ½ ∂/∂q (q̇ᵀ L Lᵀ q̇) = Σ q̇_i (Lᵀ q̇)_j ∂L_ij/∂q, or ½ ∂/∂q (q̇ᵀ E q̇) = Σ ½ q̇_i q̇_j ∂E_ij/∂q
     for k in range(n):
         work[adjoint + k] = 0.0
     e = offset(0)
     for i in range(r):
         for j in range(i + offset(1)):
-            weight = work[rates + i] * work[turned + j]
+            weight = work[rates + i] * work[(turned if factored else rates) + j]
+            if not factored and i == j:
+                weight *= 0.5
             row = e * n
             for k in range(n):
                 work[adjoint + k] += weight * readout[row + k]

@@ -87,7 +87,7 @@ class PolynomialPortHamiltonian(PortHamiltonian):
 
     def own_kernel(self) -> tuple[NamedTuple, int]:
         """Monomials as products, their adjoints for the gyroscopic term, and a small system."""
-        _, of_q, of_p, of_rates = self._scales()
+        _, of_q, of_p, of_rates = self.scales()
         rows, columns = np.tril_indices(self.pairs)
         order, pieces = runs(self.exponents)
         unscaled = self._coefficients[:, order] * (of_p[rows] / of_rates[columns])[:, None]

@@ -6,6 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Literal
 
+import numpy as np
+
 from flexsurr.config.trial import (
     AdamW,
     EvenNetwork,
@@ -24,6 +26,7 @@ from flexsurr.surrogates import (
     MLP,
     DissipativeHNN,
     Network,
+    PortHamiltonian,
     StateScaling,
     Surrogate,
     canonical_scaling,
@@ -32,17 +35,25 @@ from flexsurr.surrogates import (
 )
 from flexsurr.training.adam import Adam
 from flexsurr.training.dataset import Dataset, SampleSource
-from flexsurr.training.epochs import Fit, Loss, Optimiser, Progress, Report, train
+from flexsurr.training.epochs import Ending, Fit, Loss, Optimiser, Progress, Report, train
 from flexsurr.training.even_hnn_training import EvenHNNObjective, untrained_even_hnn
 from flexsurr.training.initialisation import initial_parameters
-from flexsurr.training.inverse_dynamics import NotPositiveDefinite, fit_port_hamiltonian
+from flexsurr.training.inverse_dynamics import (
+    NotPositiveDefinite,
+    fit_port_hamiltonian,
+    indefinite,
+    is_positive_definite,
+)
 from flexsurr.training.least_squares import fit_polynomial
 from flexsurr.training.levenberg_marquardt import LevenbergMarquardt, second_order
 from flexsurr.training.losses import FieldErrors
 from flexsurr.training.objective import Objective
 from flexsurr.training.port_hamiltonian_training import (
+    EntriesOptimiser,
+    FieldLoss,
     InverseThenForward,
     PortHamiltonianObjective,
+    untrained_entries,
     untrained_port_hamiltonian,
 )
 
@@ -80,11 +91,12 @@ def fit(trial: Trial, source: SampleSource, folder: str | Path, report: Report |
     best = replace(network, parameters=trained.best)
     network = replace(network, parameters=trained.kept)
     errors = FieldErrors.over(network, dataset.validation_blocks())
+    ending = _with_mass(network, trained.ending, dataset)
     return Fit(
         surrogate=network,
         best=best,
-        status=trained.ending.status,
-        reason=trained.ending.reason,
+        status=ending.status,
+        reason=ending.reason,
         train_nmse=training.loss(network.parameters),
         validation_nmse=validation.loss(network.parameters),
         best_validation_nmse=trained.progress.best_loss,
@@ -94,14 +106,28 @@ def fit(trial: Trial, source: SampleSource, folder: str | Path, report: Report |
     )
 
 
+def _with_mass(surrogate: Surrogate, ending: Ending, dataset: Dataset) -> Ending:
+    """`ending`, or that of a surrogate whose mass matrix is not positive definite at every sample."""
+    if not isinstance(surrogate, PortHamiltonian) or ending.reason:
+        return ending
+    q = np.concatenate([dataset.x_train, dataset.x_validation])[:, : surrogate.pairs]
+    positive = is_positive_definite(surrogate, q)
+    if positive.all():
+        return ending
+    return Ending("failed", indefinite("of the network", q[np.argmin(positive)]))
+
+
 def _begun(trial: Iterative, dataset: Dataset) -> tuple[Surrogate, Loss, Loss, Optimiser]:
     """Random weights, their losses over training and validation samples, and what will make them better."""
     training = dataset.x_train, dataset.dx_train
     validation = dataset.x_validation, dataset.dx_validation
     if isinstance(trial, PortHamiltonianNetwork):
-        port = untrained_port_hamiltonian(
-            dataset, trial.hidden, trial.activation, trial.seed, trial.potential == "polynomial"
-        )
+        what = dataset, trial.hidden, trial.activation, trial.seed, trial.potential == "polynomial"
+        if trial.mass_matrix == "entries":
+            entries, mass = untrained_entries(*what)
+            optimiser = EntriesOptimiser(entries, training[0][:, : entries.pairs] / entries.scales()[1], mass)
+            return entries, FieldLoss(entries, *training), FieldLoss(entries, *validation), optimiser
+        port = untrained_port_hamiltonian(*what)
         inverse, forward = (PortHamiltonianObjective.of(port, *training, forward=f) for f in (False, True))
         held_out = PortHamiltonianObjective.of(port, *validation, forward=True)
         return port, forward, held_out, InverseThenForward(inverse, forward, port.parameters)

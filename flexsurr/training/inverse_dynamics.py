@@ -17,7 +17,13 @@ from numpy.typing import NDArray
 
 from flexsurr.simulation.rhs import Array
 from flexsurr.storage import Scales
-from flexsurr.surrogates import PairScaling, PolynomialPortHamiltonian, StateScaling, pair_scaling
+from flexsurr.surrogates import (
+    PairScaling,
+    PolynomialPortHamiltonian,
+    PortHamiltonian,
+    StateScaling,
+    pair_scaling,
+)
 from flexsurr.surrogates.monomials import (
     Exponents,
     differentiate,
@@ -41,11 +47,14 @@ class NotPositiveDefinite(Exception):
     """A fitted mass matrix that is not so, where the message says; `surrogate` has it."""
 
     def __init__(self, surrogate: PolynomialPortHamiltonian, q: Array) -> None:
-        place = ", ".join(f"{value:.4g}" for value in q)
-        super().__init__(
-            f"the mass matrix of degree {surrogate.degree} is not positive definite at q = ({place})"
-        )
+        super().__init__(indefinite(f"of degree {surrogate.degree}", q))
         self.surrogate = surrogate
+
+
+def indefinite(which: str, q: Array) -> str:
+    """In words: that the mass matrix is not positive definite at q (r,), and which one."""
+    place = ", ".join(f"{value:.4g}" for value in q)
+    return f"the mass matrix {which} is not positive definite at q = ({place})"
 
 
 class InverseDynamics:
@@ -280,7 +289,7 @@ def channel_spread(scaling: StateScaling, scales: Scales) -> Array:
     return spread
 
 
-def is_positive_definite(surrogate: PolynomialPortHamiltonian, q: Array) -> NDArray[np.bool_]:
+def is_positive_definite(surrogate: PortHamiltonian, q: Array) -> NDArray[np.bool_]:
     """Whether the mass matrix is so at each of the coordinates q (m, r)."""
     smallest = np.linalg.eigvalsh(surrogate.mass_matrix(q))[:, 0]
     positive: NDArray[np.bool_] = smallest > 0.0

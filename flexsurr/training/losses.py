@@ -4,11 +4,14 @@ from collections.abc import Iterable
 from typing import Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flexsurr.simulation.rhs import Array
 from flexsurr.storage.scales import Moments
 from flexsurr.surrogates import Surrogate
 from flexsurr.training.dataset import Block, for_each_piece
+
+_ROUNDING = 1e-12  # an output that varies by less, beside the largest of all, is constant
 
 
 def output_weights(target: Array) -> Array:
@@ -25,6 +28,17 @@ def weights_of_variance(variance: Array) -> Array:
         raise ValueError(f"output {int(np.argmin(variance))} does not vary over the samples")
     weights: Array = 1.0 / (variance.size * variance)
     return weights
+
+
+def spreads(target: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Standard deviations (d,) of `target` (m, d), and a mask of the outputs that do not vary.
+
+    Of those it is the largest size of any output: rounding is all that there is to learn of them.
+    """
+    largest = float(np.max(np.abs(target))) or 1.0
+    spread = np.std(target, axis=0)
+    constant = spread <= _ROUNDING * largest
+    return np.where(constant, largest, spread), constant
 
 
 def nmse(predicted: Array, target: Array) -> float:

@@ -24,14 +24,13 @@ from flexsurr.surrogates.network_map import side_by_side, with_products
 from flexsurr.training.epochs import Ending, Fit, Limits, Progress, Report, run_epochs, train
 from flexsurr.training.initialisation import initial_weights
 from flexsurr.training.levenberg_marquardt import LevenbergMarquardt, second_order
-from flexsurr.training.losses import nmse
+from flexsurr.training.losses import nmse, spreads
 from flexsurr.training.map_data import MapData, nmse_per_output
 from flexsurr.training.one_hidden_layer import OneHiddenLayer
 from flexsurr.training.triangle import Triangle
 
 DEGREES = {"linear": 1, "quadratic": 2}
 BLOCK = 4096  # samples at a time
-_ROUNDING = 1e-12  # an output that varies by less, beside the largest of all, is constant
 
 
 def coordinates(eta: Array) -> Intervals:
@@ -78,10 +77,8 @@ def fit_network_map(
 
     Every output counts relative to its spread; one that does not vary is a constant.
     """
-    mean, spread = np.mean(y, axis=0), np.std(y, axis=0)
-    largest = float(np.max(np.abs(y))) or 1.0
-    constant = spread <= _ROUNDING * largest
-    half = np.where(constant, largest, spread)
+    mean = np.mean(y, axis=0)
+    half, constant = spreads(y)
     outputs = Intervals(tuple(output_names), mean - half, mean + half)
     n, k = len(inputs.names), len(outputs.names)
     weights = np.full(k, 1.0 / k)

@@ -204,26 +204,25 @@ def _mass_matrix(surrogate: PortHamiltonian, put: Put) -> Field:
             (torch.arange(len(packed), device=packed.device)[:, None], rows, columns), packed
         )
 
+    def mirrored(packed: Tensor) -> Tensor:
+        lower = triangle(packed)
+        return lower + lower.tril(-1).mT
+
     if isinstance(surrogate, PolynomialPortHamiltonian):
         entries = surrogate.parameters[: -2 * surrogate.packed_size].reshape(surrogate.packed_size, -1)
         polynomials = _polynomials(put(surrogate.exponents), put(entries.T))
-
-        def of_polynomials(q: Tensor) -> Tensor:
-            lower = triangle(polynomials(q))
-            return lower + lower.tril(-1).mT
-
-        return of_polynomials
+        return lambda q: mirrored(polynomials(q))
     assert isinstance(surrogate, NetworkPortHamiltonian)
     weights, biases, readout, constant, *_ = map(put, surrogate.arrays())
-    floor, sigma, even = (
-        put(symmetric(surrogate.floor, surrogate.pairs)),
-        ACTIVATIONS[surrogate.activation],
-        surrogate.even,
-    )
+    floor, sigma = put(symmetric(surrogate.floor, surrogate.pairs)), ACTIVATIONS[surrogate.activation]
+    even, factored = surrogate.even, surrogate.factored
 
     def of_network(q: Tensor) -> Tensor:
         inputs = q[:, rows] * q[:, columns] if even else q
-        factor = triangle(constant + sigma(inputs @ weights + biases) @ readout.T)
+        found = constant + sigma(inputs @ weights + biases) @ readout.T
+        if not factored:
+            return floor + mirrored(found)
+        factor = triangle(found)
         return floor + factor @ factor.mT
 
     return of_network

@@ -1,24 +1,37 @@
-"""A port-Hamiltonian network before training, and the two stages of it: inverse dynamics, then its field."""
+"""Port-Hamiltonian networks: before training, and what trains them.
 
-from dataclasses import dataclass
+Where the network gives the factor of M, two stages: inverse dynamics, then the error of the field. Where it
+gives M's own entries, it is a map like any other, from configurations to a mass matrix: the reduced model's
+where samples have it, otherwise the polynomial one that inverse dynamics finds.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from flexsurr.simulation.rhs import Array
 from flexsurr.storage import Scales
-from flexsurr.surrogates import NetworkPortHamiltonian
-from flexsurr.surrogates.packed import pack, semidefinite_factor, symmetric
+from flexsurr.surrogates import NetworkPortHamiltonian, PolynomialPortHamiltonian
+from flexsurr.surrogates.layers import layer_shapes, views
+from flexsurr.surrogates.packed import pack, packed_size, semidefinite_factor, symmetric
+from flexsurr.training.configuration_samples import ConfigurationSamples
 from flexsurr.training.dataset import Dataset
+from flexsurr.training.initialisation import initial_weights
 from flexsurr.training.inverse_dynamics import NotPositiveDefinite, channel_spread, fit_port_hamiltonian
 from flexsurr.training.levenberg_marquardt import LevenbergMarquardt, NormalEquations, accumulated
-from flexsurr.training.losses import output_weights
+from flexsurr.training.losses import nmse, output_weights, spreads
+from flexsurr.training.one_hidden_layer import OneHiddenLayer
 from flexsurr.training.port_hamiltonian_rows import residuals_and_jacobian
 
 CHUNK = 1 << 20  # elements of the Jacobian that exist at a time: 8 MB
 INVERSE_EPOCHS = 60  # more of them no longer help the second stage
 INVERSE_WEIGHT = 100.0  # of the first stage's loss in the second
 BASE_DEGREE = 4
+TARGET_DEGREES = (8, 6, 4, 2)  # of the polynomial whose mass matrix a network of entries learns
+LARGEST_TARGET = 2000  # coefficients of its mass matrix
 FLOOR = 0.01  # of the mean mass matrix
 READOUT = 0.1  # of its diagonal, all neurons together
 SMALLEST = 1e-3  # eigenvalue of the mean mass matrix over the largest
@@ -88,10 +101,57 @@ def untrained_port_hamiltonian(
 
     Whether M is even in q is taken from that fit, and the `potential` too, which training leaves as it is.
     """
-    try:
-        base = fit_port_hamiltonian(dataset, BASE_DEGREE, potential)
-    except NotPositiveDefinite as failure:
-        base = failure.surrogate
+    return _about(_polynomial(dataset, (BASE_DEGREE,), potential), dataset, hidden, activation, seed)
+
+
+def untrained_entries(
+    dataset: Dataset, hidden: tuple[int, ...], activation: str, seed: int, potential: bool = False
+) -> tuple[NetworkPortHamiltonian, Array]:
+    """The same whose network gives M's entries, small random ones, and the M̂ to learn (m, r, r).
+
+    Everything but the network stays as it is.
+    """
+    known = isinstance(dataset, ConfigurationSamples)
+    polynomial = _polynomial(dataset, (BASE_DEGREE,) if known else TARGET_DEGREES, potential)
+    network = _about(polynomial, dataset, hidden, activation, seed)
+    _, of_q, of_p, of_rates = network.scales()
+    if isinstance(dataset, ConfigurationSamples):
+        mass = dataset.mass * of_rates / of_p[:, None]
+    else:
+        mass = polynomial.scaled_mass(dataset.x_train[:, : network.pairs] / of_q)
+    weights, *_, springs, dampers = network.arrays()
+    shape = len(weights), hidden[0], network.packed_size
+    first = views(initial_weights(*shape, seed, spread=1.0), layer_shapes(shape))
+    parameters = _as_surrogate(first, springs, dampers)
+    return replace(network, factored=False, parameters=parameters), mass
+
+
+def _as_surrogate(layers: list[Array], springs: Array, dampers: Array) -> Array:
+    """The parameters of the surrogate, which has the readout of a map the other way round."""
+    weights, biases, readout, constants = layers
+    parts = weights, biases, readout.T, constants, springs, dampers
+    return np.concatenate([part.ravel() for part in parts])
+
+
+def _polynomial(dataset: Dataset, degrees: Sequence[int], potential: bool) -> PolynomialPortHamiltonian:
+    """That of the first of `degrees` with a positive definite mass matrix, or else of the last.
+
+    A degree of more than `LARGEST_TARGET` coefficients is left out, but for the last.
+    """
+    r, (*others, last) = len(dataset.state_names) // 2, degrees
+    small = [degree for degree in others if math.comb(r + degree, degree) * packed_size(r) <= LARGEST_TARGET]
+    for degree in (*small, last):
+        try:
+            return fit_port_hamiltonian(dataset, degree, potential)
+        except NotPositiveDefinite as failure:
+            found = failure.surrogate
+    return found
+
+
+def _about(
+    base: PolynomialPortHamiltonian, dataset: Dataset, hidden: tuple[int, ...], activation: str, seed: int
+) -> NetworkPortHamiltonian:
+    """Random neurons about the mean of the mass matrix of `base`, and all else that it has."""
     r = base.pairs
     even = not np.any(base.exponents.sum(axis=1) % 2)
     q = dataset.x_train[:, :r] / base.scaling.states(2 * r)[:r]
@@ -126,6 +186,59 @@ def _positive_definite(matrix: Array) -> Array:
     values, vectors = np.linalg.eigh(matrix)
     nearest: Array = (vectors * np.maximum(values, SMALLEST * values[-1])) @ vectors.T
     return nearest
+
+
+@dataclass(frozen=True, eq=False)
+class FieldLoss:
+    """The nmse of the field of `network`, with any parameters, at states `x` and rates `dx` (m, 2r)."""
+
+    network: NetworkPortHamiltonian
+    x: Array
+    dx: Array
+
+    def loss(self, parameters: Array) -> float:
+        """The nmse over all samples."""
+        return nmse(replace(self.network, parameters=parameters).derivative(0.0, self.x), self.dx)
+
+
+class EntriesOptimiser:
+    """Levenberg–Marquardt on the entries of M̂ (m, r, r) at scaled coordinates `q`. Satisfies `Optimiser`.
+
+    Losses are those of the entries, each relative to its variance.
+    """
+
+    def __init__(self, network: NetworkPortHamiltonian, q: Array, mass: Array) -> None:
+        weights, biases, readout, constants, *self._others = network.arrays()
+        inputs, _ = network.inputs(q)
+        target = pack(mass) - network.floor
+        hidden, entries = network.hidden[0], network.packed_size
+        self._shapes = layer_shapes((len(weights), hidden, entries))
+        start = np.concatenate([part.ravel() for part in (weights, biases, readout.T, constants)])
+        of_entries = 1.0 / (entries * spreads(target)[0] ** 2)
+        objective = OneHiddenLayer.of_map(inputs, target, hidden, network.activation, of_entries)
+        self._method = LevenbergMarquardt(objective, start)
+
+    @property
+    def finished(self) -> str:
+        """Why there is nothing left to do; empty while there is."""
+        return self._method.finished
+
+    @property
+    def parameters(self) -> Array:
+        """Those of the surrogate (n,)."""
+        return _as_surrogate(views(self._method.parameters, self._shapes), *self._others)
+
+    def epoch(self) -> float:
+        """One accepted step; the loss of the entries after it."""
+        return self._method.epoch()
+
+    def state(self) -> dict[str, Array]:
+        """That of the method."""
+        return self._method.state()
+
+    def restore(self, state: dict[str, Array]) -> None:
+        """Go on from a `state`."""
+        self._method.restore(state)
 
 
 class Both:

@@ -92,20 +92,21 @@ def port_polynomial(
 
 
 def port_network(
-    count: int, neurons: int, activation: str, seed: int = 0, even: bool = False
+    count: int, neurons: int, activation: str, seed: int = 0, even: bool = False, factored: bool = True
 ) -> NetworkPortHamiltonian:
-    """Any weights; the floor of M is a tenth of the identity and more."""
+    """Any weights about a floor of a tenth of the identity and more; small ones about all of it, of entries."""
     generator, r = np.random.default_rng(seed), count // 2
     size = sum(math.prod(shape) for shape in NetworkPortHamiltonian.shapes(r, neurons, even))
-    floor = pack(0.1 * np.eye(r) + 0.01)
+    floor = pack((0.1 if factored else 1.0) * np.eye(r) + 0.01)
     return NetworkPortHamiltonian(
-        0.5 * generator.normal(size=size),
+        (0.5 if factored else 0.1) * generator.normal(size=size),
         pair_scaling(count),
         **states(count),
         floor=floor,
         even=even,
         hidden=(neurons,),
         activation=activation,
+        factored=factored,
     )
 
 
@@ -116,5 +117,7 @@ PORT_HAMILTONIANS = {
     "network of one pair": port_network(2, 5, "half_log"),
     "network": port_network(6, 7, "softplus"),
     "even network": port_network(6, 5, "softplus", even=True),
+    "entries": port_network(6, 5, "atan", factored=False),
+    "even entries": port_network(6, 5, "tanh", even=True, factored=False),
 }
 NETWORKS = {"hnn": HNN, "mlp": MLP, "dissipative_hnn": DissipativeHNN}

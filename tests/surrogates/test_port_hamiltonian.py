@@ -15,6 +15,7 @@ SEEDS = st.integers(0, 2**32 - 1)
 MAKERS = {
     "polynomial": lambda seed: port_polynomial(6, 4, even=seed % 2 == 0, seed=seed),
     "network": lambda seed: port_network(6, 6, "tanh", seed, even=seed % 2 == 0),
+    "entries": lambda seed: port_network(6, 6, "tanh", seed, even=seed % 2 == 0, factored=False),
 }
 EACH = pytest.mark.parametrize("surrogate", PORT_HAMILTONIANS.values(), ids=PORT_HAMILTONIANS.keys())
 
@@ -145,8 +146,9 @@ def test_the_nearest_semidefinite_matrix(seed):
 
 def test_an_even_network_is_its_own_mirror_image():
     """M(−q) = M(q): turned around, the field is the same turned around."""
-    surrogate = PORT_HAMILTONIANS["even network"]
-    x = random_states(surrogate, 7)
-    np.testing.assert_allclose(surrogate.derivative(0.0, -x), -surrogate.derivative(0.0, x), rtol=1e-12)
+    for kind in ("even network", "even entries"):
+        surrogate = PORT_HAMILTONIANS[kind]
+        x = random_states(surrogate, 7)
+        np.testing.assert_allclose(surrogate.derivative(0.0, -x), -surrogate.derivative(0.0, x), rtol=1e-12)
     other = PORT_HAMILTONIANS["network"]
     assert not np.allclose(other.derivative(0.0, -x), -other.derivative(0.0, x), rtol=1e-3)

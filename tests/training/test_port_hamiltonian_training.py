@@ -1,6 +1,6 @@
 """Port-Hamiltonian networks: derivatives of their residuals, and the two stages of their training."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -8,11 +8,13 @@ import pytest
 from flexsurr.config.trial import trial_of
 from flexsurr.surrogates import PairScaling, PolynomialPortHamiltonian, load, save
 from flexsurr.training import fit, nmse, split_dataset
+from flexsurr.training.configuration_samples import ConfigurationSamples
 from flexsurr.training.inverse_dynamics import channel_spread
 from flexsurr.training.port_hamiltonian_training import PortHamiltonianObjective, untrained_port_hamiltonian
 
 NAMES = ("eta_1", "eta_2", "p_1", "p_2")
 TRIAL = trial_of(architecture="port_hamiltonian", hidden=(6,), activation="atan", epochs=70)
+ENTRIES = trial_of(**TRIAL.model_dump(), mass_matrix="entries")
 
 
 def samples(odd: float, number=240, seed=0):
@@ -103,6 +105,59 @@ def test_it_learns(tmp_path):
     np.testing.assert_allclose(result.surrogate.stiffness[0, 0], 2.0 * 60.0 / 0.3**2, rtol=1e-3)
     save(result.surrogate, tmp_path / "weights.npz")
     np.testing.assert_array_equal(load(tmp_path / "weights.npz").parameters, result.surrogate.parameters)
+
+
+@pytest.mark.parametrize("dataset", [EVEN, ODD], ids=["even", "odd"])
+def test_the_entries_of_the_mass_matrix_are_learned_far_more_accurately(dataset, tmp_path):
+    factored, entries = (fit(trial, dataset, tmp_path) for trial in (TRIAL, ENTRIES))
+    assert entries.status == "finished"
+    assert entries.surrogate.even == (dataset is EVEN)
+    assert entries.validation_nmse < 1e-3 * factored.validation_nmse
+    assert entries.validation_nmse == pytest.approx(
+        nmse(entries.surrogate.derivative(0.0, dataset.x_validation), dataset.dx_validation)
+    )
+    assert entries.validation_nmse == pytest.approx(entries.history["validation_loss"].min())
+    save(entries.surrogate, tmp_path / "weights.npz")
+    again = load(tmp_path / "weights.npz")
+    x = dataset.x_validation
+    np.testing.assert_array_equal(again.derivative(0.0, x), entries.surrogate.derivative(0.0, x))
+
+
+def with_mass(mass):
+    """The samples of EVEN with this matrix `mass` (2, 2) at every configuration."""
+    masses = np.broadcast_to(mass, (len(EVEN.x_train), 2, 2)).copy()
+    known = {field.name: getattr(EVEN, field.name) for field in fields(EVEN)}
+    return ConfigurationSamples(**known, mass=masses, stiffness=np.eye(2), damping=0.1 * np.eye(2))
+
+
+def test_where_the_mass_matrix_is_known_it_is_what_is_learned(tmp_path):
+    """One that does not vary too; springs and dampers are those of the samples, whose rates are others."""
+    mass = np.array([[2.0, 0.3], [0.3, 1.0]])
+    surrogate = fit(ENTRIES.model_copy(update={"keep": "last"}), with_mass(mass), tmp_path).surrogate
+    np.testing.assert_allclose(surrogate.mass_matrix(EVEN.x_train[:, :2]), with_mass(mass).mass, rtol=1e-6)
+    np.testing.assert_allclose(surrogate.stiffness, np.eye(2), rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(surrogate.damping, 0.1 * np.eye(2), rtol=1e-12, atol=1e-12)
+
+
+def test_a_mass_matrix_that_is_not_positive_definite_has_failed(tmp_path):
+    result = fit(ENTRIES, with_mass(np.diag([1.0, -0.5])), tmp_path)
+    assert result.status == "failed"
+    assert "mass matrix of the network is not positive definite at q = (" in result.reason
+
+
+def test_killed_and_resumed_the_entries_are_as_uninterrupted(tmp_path, monkeypatch):
+    trial = ENTRIES.model_copy(update={"epochs": 12})
+    expected = fit(trial, ODD, tmp_path / "whole")
+    monkeypatch.setattr("flexsurr.training.epochs.CHECKPOINT_EVERY_S", 0.0)
+
+    def kill(epoch, *_):
+        if epoch == 6:
+            raise Killed
+
+    with pytest.raises(Killed):
+        fit(trial, ODD, tmp_path / "killed", kill)
+    found = fit(trial, ODD, tmp_path / "killed")
+    np.testing.assert_array_equal(found.surrogate.parameters, expected.surrogate.parameters)
 
 
 class Killed(Exception):
