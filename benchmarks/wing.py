@@ -63,3 +63,17 @@ def datasets(variant: Variant, kind: Kind = "modal") -> dict[str, Dataset]:
         dx_validation=np.concatenate([fifty.dx_train, fifty.dx_validation]),
     )
     return {"50 responses": fifty, "1,000 x 5": many}
+
+
+def tip_errors(model, reference, times, responses) -> list[float]:
+    """Of each response at `times`, over the peak of the tip's displacement; infinite where it fails."""
+    at_rest, errors = reference.tip(np.zeros(6)), []
+    for exact in responses:
+        found = simulate(model, times, exact[0], ACCURATE)
+        if not found.completed:
+            errors.append(np.inf)
+            continue
+        peak = np.max(np.linalg.norm(reference.tip(exact) - at_rest, axis=1))
+        distance = np.linalg.norm(reference.tip(found.x) - reference.tip(exact), axis=1)
+        errors.append(float(np.max(distance) / peak))
+    return errors

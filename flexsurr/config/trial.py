@@ -372,7 +372,8 @@ def settings_of(trial: Trial) -> dict[str, Any]:
     """Every setting that a trial of its kind may have, as JSON has it: None where this one takes none."""
     values = trial.model_dump(mode="json")
     kind = MAPS if isinstance(trial, Map) else FIELDS
-    return {key: values.get(key) for key in dimensions(kind)}
+    # one that is left out of the names of runs has a value all the same
+    return {key: values.get(key, getattr(trial, key, None)) for key in dimensions(kind)}
 
 
 def configurations_of(trial: Architecture) -> int | None:

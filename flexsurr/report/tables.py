@@ -30,6 +30,7 @@ TRAINING_COLUMNS = (
     "scaling",
     "samples_per_trajectory",
     "potential",
+    "mass_matrix",
     "optimiser",
     "learning_rate",
     "weight_decay",

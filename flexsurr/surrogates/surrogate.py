@@ -81,12 +81,10 @@ def symplectic(gradient: Array) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class CompiledSurrogate:
-    """A CompiledModel; `surrogate` is what it was made from."""
+class FormOfSurrogate:
+    """A Model by other code than that of the `surrogate` it was made from."""
 
     surrogate: Surrogate
-    kernel: NamedTuple
-    work_size: int
     breakpoints: ClassVar[tuple[float, ...]] = ()
 
     @property
@@ -98,6 +96,14 @@ class CompiledSurrogate:
     def state_units(self) -> tuple[str, ...]:
         """Units of the states, those of the surrogate."""
         return self.surrogate.state_units
+
+
+@dataclass(frozen=True, eq=False)
+class CompiledSurrogate(FormOfSurrogate):
+    """A CompiledModel."""
+
+    kernel: NamedTuple
+    work_size: int
 
     def derivative(self, t: float, x: Array) -> Array:
         """ẋ (2r,) at the state `x` (2r,), through the compiled kernel."""

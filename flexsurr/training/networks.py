@@ -3,7 +3,6 @@
 import itertools
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 import numpy as np
 import torch
@@ -13,6 +12,7 @@ from flexsurr.simulation.rhs import Array
 from flexsurr.surrogates import Network, NetworkMap
 from flexsurr.surrogates.hnn import ScalarNetworks
 from flexsurr.surrogates.scaling import rates_of, scaled_states
+from flexsurr.surrogates.surrogate import FormOfSurrogate
 from flexsurr.surrogates.torch_module import field
 
 ACTIVATIONS: dict[str, Callable[[Tensor], Tensor]] = {
@@ -80,22 +80,10 @@ def from_torch(module: TorchNetwork, network: Network) -> Network:
 
 
 @dataclass(frozen=True, eq=False)
-class TorchModel:
+class TorchModel(FormOfSurrogate):
     """A Model that evaluates its network through torch, differentiating H at every call."""
 
-    surrogate: Network
     module: TorchNetwork
-    breakpoints: ClassVar[tuple[float, ...]] = ()
-
-    @property
-    def state_names(self) -> tuple[str, ...]:
-        """Names of the states, those of the surrogate."""
-        return self.surrogate.state_names
-
-    @property
-    def state_units(self) -> tuple[str, ...]:
-        """Units of the states, those of the surrogate."""
-        return self.surrogate.state_units
 
     def derivative(self, t: float, x: Array) -> Array:
         """ẋ (..., 2r) at states `x` (..., 2r), in the units of the states per second."""

@@ -243,6 +243,7 @@ def metrics() -> pd.DataFrame:
                     **dict.fromkeys(("options", "scaling", "learning_rate", "weight_decay", "batch_size")),
                     **dict.fromkeys(("precision", "device", "loss", "keep", "patience", "give_up")),
                     "samples_per_trajectory": None,
+                    "mass_matrix": None,
                     "time_limit_s": None,
                     "reason": "",
                     "seed": 0,

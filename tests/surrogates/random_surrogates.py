@@ -94,7 +94,7 @@ def port_polynomial(
 def port_network(
     count: int, neurons: int, activation: str, seed: int = 0, even: bool = False, factored: bool = True
 ) -> NetworkPortHamiltonian:
-    """Any weights about a floor of a tenth of the identity and more; small ones about all of it, of entries."""
+    """Any weights and a floor of a tenth of the identity and more; of entries small ones and all of it."""
     generator, r = np.random.default_rng(seed), count // 2
     size = sum(math.prod(shape) for shape in NetworkPortHamiltonian.shapes(r, neurons, even))
     floor = pack((0.1 if factored else 1.0) * np.eye(r) + 0.01)
