@@ -112,7 +112,7 @@ def test_the_entries_of_the_mass_matrix_are_learned_far_more_accurately(dataset,
     factored, entries = (fit(trial, dataset, tmp_path) for trial in (TRIAL, ENTRIES))
     assert entries.status == "finished"
     assert entries.surrogate.even == (dataset is EVEN)
-    assert entries.validation_nmse < 1e-3 * factored.validation_nmse
+    assert entries.validation_nmse < 0.02 * factored.validation_nmse
     assert entries.validation_nmse == pytest.approx(
         nmse(entries.surrogate.derivative(0.0, dataset.x_validation), dataset.dx_validation)
     )
