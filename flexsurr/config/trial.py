@@ -22,6 +22,7 @@ from flexsurr.config.study import Count
 ScalingKind = Literal["canonical", "per_feature", "min_max"]
 Sampling = Literal["pseudo_random", "sobol"]
 PotentialKind = Literal["polynomial"]
+Device = Literal["cpu", "cuda", "auto"]
 LatticeForm = Literal["full", "linear_in_modes"]
 Layers = Annotated[tuple[Count, ...], Field(min_length=1)]
 
@@ -78,6 +79,8 @@ class FieldNetwork(TrainedField):
     """Of states and rates. canonical: one factor for all q, one for all p, which keeps Hamilton's equations;
     per_feature: each by its own spread; min_max: each from 0 to 1.
     """
+    device: Device = Field(default="cpu", exclude_if=lambda value: value == "cpu")
+    """Where it is trained; auto: on a GPU if there is one, by torch. Not for levenberg_marquardt."""
 
     optimisers = ("levenberg_marquardt", "lbfgs", "adam", "adam_cosine", "adamw", "adamw_cosine")
 
@@ -131,7 +134,6 @@ class PortHamiltonianNetwork(TrainedField):
     """polynomial: the potential is one, found by least squares, which knows weight and any equilibrium, as a
     structure under gravity needs. None: ½ qᵀKq.
     """
-    # left out where it is not given, as give_up below
     mass_matrix: Literal["factored", "entries"] = Field(
         default="factored", exclude_if=lambda value: value == "factored"
     )
@@ -157,7 +159,7 @@ class TorchModule(TrainedField):
     """Keywords of the class. In a sweep each has a list of values."""
     scaling: ScalingKind = "canonical"
     """Of states and rates, as above."""
-    device: Literal["cpu", "cuda", "auto"] = "cpu"
+    device: Device = "cpu"
     """Where torch trains; auto: on a GPU if there is one."""
     sha256: str = ""
     """The hash of its file. It is found, not given: leave it out."""
@@ -323,6 +325,9 @@ FIELDS: tuple[type[Architecture], ...] = (
 MAPS: tuple[type[Architecture], ...] = (MapPolynomial, MapNetwork)
 """What a map may be learned by."""
 
+ON_DEVICE = {"lbfgs", "adam", "adam_cosine", "adamw", "adamw_cosine"}
+"""What trains on a device too, where the architecture has a form in torch that autograd differentiates."""
+
 OPTIMISERS: tuple[type[Optimiser], ...] = (FullBatch, Adam, AdamW, LeastSquares)
 """What trains; the first name is the one that holds where none is given, for torch modules their first."""
 
@@ -349,6 +354,11 @@ def trial_of(**settings: Any) -> Trial:
     (optimiser,) = _called("optimiser", given["optimiser"], OPTIMISERS)
     takes = form.model_fields | optimiser.model_fields
     what, by = given["architecture"], given["optimiser"]
+    on_cpu = form.optimisers if "device" not in takes else set(form.optimisers) - ON_DEVICE
+    if given.get("device", "cpu") != "cpu" and by in on_cpu:
+        others = [name for name in form.optimisers if name not in on_cpu]
+        allowed = f"; on a device: {', '.join(others)}" if others else ""
+        raise ValueError(f"device: {by} trains this {what} by compiled code, on the CPU{allowed}")
     if nothing := sorted(given.keys() - takes):
         known = any(nothing[0] in each.model_fields for each in OPTIMISERS)
         allowed = ", ".join(sorted(takes.keys() - {"architecture", "optimiser"})) or "nothing more"

@@ -280,6 +280,7 @@ def train(
     folder: Path,
     belongs_to: dict[str, Any],
     report: Report | None,
+    prepared: tuple[float, float] = (0.0, 0.0),
 ) -> Trained:
     """Train from the weights `start` to the trial's limits: `run_epochs` of this trial."""
     progress, ending = run_epochs(
@@ -290,6 +291,7 @@ def train(
         folder,
         {"trial": trial.model_dump(mode="json"), **belongs_to},
         report,
+        prepared,
     )
     best = progress.best_parameters
     keeps_best = ending.reason or trial.keep == "best"
@@ -305,8 +307,11 @@ def run_epochs(
     folder: Path | None = None,
     belongs_to: Mapping[str, Any] = MappingProxyType({}),
     report: Report | None = None,
+    prepared: tuple[float, float] = (0.0, 0.0),
 ) -> tuple[Progress, Ending]:
     """What became of training from the weights `start`, and how it ended.
+
+    `prepared` are the seconds of wall and processor that these weights took, the first that count.
 
     Resumes from the checkpoint in `folder`, if one is given, that `belongs_to` the same; there is none when
     it ends, which is at the limits or when the optimiser has nothing left to do. `report(epoch, train_loss,
@@ -319,9 +324,9 @@ def run_epochs(
     if states is not None:
         progress = Progress.restored(states["progress"])
         optimiser.restore(states["optimiser"])
-    # the clocks of this process, set forward by what an earlier one has spent
-    began = time.perf_counter() - progress.wall_s
-    processor_began = time.process_time() - progress.processor_s
+    # the clocks of this process, set forward by what has been spent
+    spent = prepared if states is None else (progress.wall_s, progress.processor_s)
+    began, processor_began = time.perf_counter() - spent[0], time.process_time() - spent[1]
     saved = time.perf_counter()
     ending: Ending | None = None
     while ending is None and not _at_end(limits, progress, optimiser):

@@ -84,9 +84,17 @@ def fit(trial: Trial, source: SampleSource, folder: str | Path, report: Report |
     dataset = source.loaded()
     if trial.samples_per_trajectory is not None:
         dataset = dataset.thinned(trial.samples_per_trajectory)
+    start, processor_start = time.perf_counter(), time.process_time()
     network, training, validation, optimiser = _begun(trial, dataset)
     trained = train(
-        trial, optimiser, validation, network.parameters, folder, {"dataset": dataset.sha256}, report
+        trial,
+        optimiser,
+        validation,
+        network.parameters,
+        folder,
+        {"dataset": dataset.sha256},
+        report,
+        prepared=(time.perf_counter() - start, time.process_time() - processor_start),
     )
     best = replace(network, parameters=trained.best)
     network = replace(network, parameters=trained.kept)
@@ -141,6 +149,12 @@ def _begun(trial: Iterative, dataset: Dataset) -> tuple[Surrogate, Loss, Loss, O
 
         return begun(trial, SCALINGS[trial.scaling](dataset.scales), dataset)
     network = _untrained(trial, dataset)
+    if trial.device != "cpu":
+        from flexsurr.training.torch_training import begun_on, device_of  # here, for it imports torch
+
+        device = device_of(trial.device)
+        if device.type != "cpu":  # where compiled code is faster
+            return begun_on(device, trial, network, dataset)
     objective = Objective.of(network, *training)
     return network, objective, Objective.of(network, *validation), _optimiser(trial, objective)
 

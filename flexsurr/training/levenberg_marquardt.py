@@ -11,7 +11,7 @@ geodesic acceleration of Transtrum & Sethna, *Improvements to the Levenberg-Marq
 least-squares minimization*, arXiv:1201.5885. Networks then take a fraction of the steps.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
@@ -91,18 +91,34 @@ def accumulated(rows: Rows, shape: tuple[int, ...], unknowns: int, chunk: int) -
 
     Of the Jacobian there is at least one sample's part.
     """
+    loss, gram, gradient = 0.0, np.zeros((unknowns, unknowns)), np.zeros(unknowns)
+    for _, residuals, jacobian in _pieces(rows, shape, unknowns, chunk):
+        loss += float(residuals @ residuals)
+        gram += jacobian.T @ jacobian
+        gradient += jacobian.T @ residuals
+    return NormalEquations(loss, gram, gradient)
+
+
+def pulled(rows: Rows, shape: tuple[int, ...], unknowns: int, chunk: int, vector: Array) -> Array:
+    """Jᵀ times a `vector` (m · d,), in the same pieces."""
+    product = np.zeros(unknowns)
+    for place, _, jacobian in _pieces(rows, shape, unknowns, chunk):
+        product += jacobian.T @ vector[place]
+    return product
+
+
+def _pieces(
+    rows: Rows, shape: tuple[int, ...], unknowns: int, chunk: int
+) -> Iterator[tuple[slice, Array, Array]]:
+    """Residuals and Jacobian piece by piece, each with its place among all residuals."""
     samples, d = shape
     step = min(max(chunk // (unknowns * d), 1), samples)
     jacobian, residuals = np.empty((step * d, unknowns)), np.empty(step * d)
-    loss, gram, gradient = 0.0, np.zeros((unknowns, unknowns)), np.zeros(unknowns)
     for first in range(0, samples, step):
-        part = slice(first, first + step)
-        rows(part, residuals, jacobian)
-        filled = d * (min(first + step, samples) - first)
-        loss += float(residuals[:filled] @ residuals[:filled])
-        gram += jacobian[:filled].T @ jacobian[:filled]
-        gradient += jacobian[:filled].T @ residuals[:filled]
-    return NormalEquations(loss, gram, gradient)
+        last = min(first + step, samples)
+        rows(slice(first, last), residuals, jacobian)
+        filled = d * (last - first)
+        yield slice(d * first, d * last), residuals[:filled], jacobian[:filled]
 
 
 def second_difference(

@@ -6,11 +6,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import torch
+from numpy.typing import NDArray
 from torch import Tensor, nn
 
 from flexsurr.simulation.rhs import Array
 from flexsurr.surrogates import Network, NetworkMap
 from flexsurr.surrogates.hnn import ScalarNetworks
+from flexsurr.surrogates.layers import views
 from flexsurr.surrogates.scaling import rates_of, scaled_states
 from flexsurr.surrogates.surrogate import FormOfSurrogate
 from flexsurr.surrogates.torch_module import field
@@ -63,20 +65,27 @@ class TorchNetwork(nn.Module):
         return (first, *others) if others else first
 
 
+def order_in_torch(network: Network) -> NDArray[np.int64]:
+    """Where each of a module's weights lies in the vector of `network`: torch has weights (to, from)."""
+    shapes = network.shapes(len(network.state_names), network.hidden)
+    return np.concatenate([each.T.ravel() for each in views(np.arange(network.parameter_count), shapes)])
+
+
 def to_torch(network: Network, dtype: torch.dtype = torch.float64) -> TorchNetwork:
-    """The torch module with the weights of `network`; torch has weights (to, from)."""
+    """The torch module with the weights of `network`."""
     scalars = network.networks if isinstance(network, ScalarNetworks) else 0
     module = TorchNetwork(network.widths, network.activation, scalars).to(dtype)
-    with torch.no_grad():
-        for parameter, array in zip(module.parameters(), network.arrays(), strict=True):
-            parameter.copy_(torch.from_numpy(array.T.reshape(parameter.shape).copy()))
+    weights = torch.from_numpy(network.parameters[order_in_torch(network)]).to(dtype)
+    nn.utils.vector_to_parameters(weights, module.parameters())
     return module
 
 
 def from_torch(module: TorchNetwork, network: Network) -> Network:
     """`network` with the weights of the torch `module` of its shape in place of its own."""
-    arrays = [parameter.detach().double().numpy().T for parameter in module.parameters()]
-    return replace(network, parameters=np.concatenate([np.ascontiguousarray(a).ravel() for a in arrays]))
+    parameters = np.empty(network.parameter_count)
+    weights = nn.utils.parameters_to_vector(module.parameters()).detach()
+    parameters[order_in_torch(network)] = weights.double().cpu().numpy()
+    return replace(network, parameters=parameters)
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ where samples have it, otherwise the polynomial one that inverse dynamics finds.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -21,7 +21,13 @@ from flexsurr.training.configuration_samples import ConfigurationSamples
 from flexsurr.training.dataset import Dataset
 from flexsurr.training.initialisation import initial_weights
 from flexsurr.training.inverse_dynamics import NotPositiveDefinite, channel_spread, fit_port_hamiltonian
-from flexsurr.training.levenberg_marquardt import LevenbergMarquardt, NormalEquations, accumulated
+from flexsurr.training.levenberg_marquardt import (
+    LevenbergMarquardt,
+    NormalEquations,
+    accumulated,
+    pulled,
+    second_difference,
+)
 from flexsurr.training.losses import nmse, output_weights, spreads
 from flexsurr.training.one_hidden_layer import OneHiddenLayer
 from flexsurr.training.port_hamiltonian_rows import residuals_and_jacobian
@@ -80,18 +86,22 @@ class PortHamiltonianObjective:
 
     def loss(self, parameters: Array) -> float:
         """The weighted mean squared error over all samples."""
+        residuals = self._residuals(parameters)
+        return float(residuals @ residuals)
+
+    def _residuals(self, parameters: Array) -> Array:
         residuals = np.empty(self.x.size)
         self._rows(parameters, slice(None), residuals, np.empty((0, parameters.size)))
-        return float(residuals @ residuals)
+        return residuals
 
     def normal_equations(self, parameters: Array) -> NormalEquations:
         """JᵀJ and Jᵀr, accumulated over pieces of the Jacobian."""
-        return accumulated(
-            lambda part, residuals, jacobian: self._rows(parameters, part, residuals, jacobian),
-            self.x.shape,
-            parameters.size,
-            CHUNK,
-        )
+        return accumulated(partial(self._rows, parameters), self.x.shape, parameters.size, CHUNK)
+
+    def bend(self, parameters: Array, step: Array) -> Array:
+        """Jᵀr″ (n,), of the second derivative r″ of the residuals along `step` (n,)."""
+        second = second_difference(self._residuals(parameters), self._residuals, parameters, step)
+        return pulled(partial(self._rows, parameters), self.x.shape, parameters.size, CHUNK, second)
 
 
 def untrained_port_hamiltonian(
@@ -259,6 +269,10 @@ class Both:
             forward.gram + INVERSE_WEIGHT * inverse.gram,
             forward.gradient + INVERSE_WEIGHT * inverse.gradient,
         )
+
+    def bend(self, parameters: Array, step: Array) -> Array:
+        """The weighted sum of both."""
+        return self._forward.bend(parameters, step) + INVERSE_WEIGHT * self._inverse.bend(parameters, step)
 
 
 class InverseThenForward:

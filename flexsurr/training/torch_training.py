@@ -1,8 +1,12 @@
-"""A network of the user's own: from its file to what an optimiser minimises, by autograd, on any device."""
+"""Networks trained by torch: what an optimiser minimises, by autograd, on any device.
+
+The user's own networks, from their file on, and flexsurr's where they are to be trained on a device.
+"""
 
 import math
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +19,7 @@ from flexsurr.config.errors import ConfigurationError
 from flexsurr.config.own_network import OwnNetwork, own_network, read_source, sha256
 from flexsurr.config.trial import AdamW, FirstOrder, Iterative, TorchModule
 from flexsurr.simulation.rhs import Array
+from flexsurr.surrogates import Network
 from flexsurr.surrogates.scaling import StateScaling, scaled_rates, scaled_states
 from flexsurr.surrogates.torch_module import Source, checked, field, weights_of
 from flexsurr.surrogates.torch_surrogate import TorchSurrogate, torch_surrogate
@@ -22,9 +27,12 @@ from flexsurr.training.dataset import Dataset
 from flexsurr.training.epochs import Optimiser
 from flexsurr.training.lbfgs import LBFGS
 from flexsurr.training.losses import output_weights
+from flexsurr.training.networks import order_in_torch, to_torch
 from flexsurr.training.objective import Minimised
 
 PIECE = 16384  # samples of which a whole loss is made at a time
+PRECISIONS = {"single": torch.float32, "double": torch.float64}
+CPU = torch.device("cpu")
 MOMENTS = ("exp_avg", "exp_avg_sq")
 TRIED = 5  # samples with which a module is tried before it is trained
 
@@ -38,7 +46,7 @@ def device_of(name: str) -> torch.device:
     if name == "cuda" and not there:
         raise ConfigurationError(["device: cuda is not available on this machine; allowed: cpu, auto"])
     if name == "cpu" or not there:
-        return torch.device("cpu")
+        return CPU
     # the same sums in the same order each time
     os.environ.setdefault("CUBLAS_WORKSPACE_CONFIG", ":4096:8")
     torch.use_deterministic_algorithms(True)
@@ -49,28 +57,40 @@ class TorchObjective:
     """The nmse of the field of `module` at scaled states `x` and scaled derivatives `y` (m, 2r).
 
     First-order steps may minimise another loss: see `batches.loss_and_gradient`. Samples are held in the
-    precision and on the device of the module. The weights that a loss is asked for stay in the module.
+    precision and on the device of the module. The weights that a loss is asked for stay in the module; in
+    the vectors of parameters and gradients they lie at `places` (by default one after the other).
     """
 
-    def __init__(self, module: nn.Module, x: Array, y: Array, minimised: Minimised = "nmse") -> None:
+    def __init__(
+        self,
+        module: nn.Module,
+        x: Array,
+        y: Array,
+        minimised: Minimised = "nmse",
+        places: NDArray[np.int64] | None = None,
+    ) -> None:
         self.module, self.minimised = module, minimised
         self.weights = weights_of(module)
         like = self.weights[0]
+        count = sum(weight.numel() for weight in self.weights)
+        self._places = np.arange(count) if places is None else places
         self.x, self.y, self._of_outputs = (
             torch.from_numpy(np.ascontiguousarray(a)).to(like) for a in (x, y, output_weights(y))
         )
 
     @property
     def parameters(self) -> Array:
-        """The weights of the module, one after the other."""
+        """The weights of the module."""
+        parameters = np.empty(self._places.size)
         with torch.no_grad():
-            return nn.utils.parameters_to_vector(self.weights).cpu().double().numpy()
+            parameters[self._places] = nn.utils.parameters_to_vector(self.weights).cpu().double().numpy()
+        return parameters
 
     @parameters.setter
     def parameters(self, parameters: Array) -> None:
         with torch.no_grad():
-            vector = torch.from_numpy(parameters).to(self.weights[0])
-            nn.utils.vector_to_parameters(vector.clone(), self.weights)
+            vector = torch.from_numpy(parameters[self._places]).to(self.weights[0])
+            nn.utils.vector_to_parameters(vector, self.weights)
 
     def loss(self, parameters: Array) -> float:
         """The nmse over all samples; not finite where a weight or the field is not."""
@@ -92,7 +112,8 @@ class TorchObjective:
             loss, gradients = self.of_batch(piece)
             share = len(piece) / len(chosen)
             total += share * loss.item()
-            gradient += share * torch.cat([g.reshape(-1) for g in gradients]).double().cpu().numpy()
+            found = torch.cat([g.reshape(-1) for g in gradients]).double().cpu().numpy()
+            gradient[self._places] += share * found
         return total
 
     def of_batch(self, samples: Tensor) -> tuple[Tensor, tuple[Tensor, ...]]:
@@ -201,12 +222,34 @@ def begun(
     network = own_network(trial.architecture)
     assert network is not None
     surrogate = untrained(source_of(network, trial.sha256, trial.options, trial.seed), dataset, scaling)
-    training = objective_of(surrogate, dataset.x_train, dataset.dx_train, device=trial.device)
-    validation = objective_of(surrogate, dataset.x_validation, dataset.dx_validation, device=trial.device)
+    of = partial(objective_of, surrogate, device=device_of(trial.device))
+    return surrogate, *_optimised(trial, dataset, of, surrogate.parameters)
+
+
+def begun_on(
+    device: torch.device, trial: Iterative, network: Network, dataset: Dataset
+) -> tuple[Network, TorchObjective, TorchObjective, Optimiser]:
+    """The same of a `network` of flexsurr's own, from its weights on."""
+
+    def of(x: Array, dx: Array, minimised: Minimised = "nmse", precision: str = "double") -> TorchObjective:
+        scaling = network.scaling
+        scaled = scaled_states(scaling, x), scaled_rates(scaling, dx)
+        module = to_torch(network, PRECISIONS[precision]).to(device)
+        return TorchObjective(module, *scaled, minimised, order_in_torch(network))
+
+    return network, *_optimised(trial, dataset, of, network.parameters)
+
+
+def _optimised(
+    trial: Iterative, dataset: Dataset, of: Callable[..., TorchObjective], start: Array
+) -> tuple[TorchObjective, TorchObjective, Optimiser]:
+    """The losses over training and validation samples, and the trial's optimiser from the weights `start`."""
+    samples = dataset.x_train, dataset.dx_train
+    training, validation = of(*samples), of(dataset.x_validation, dataset.dx_validation)
     if not isinstance(trial, FirstOrder):
-        return surrogate, training, validation, LBFGS(training, surrogate.parameters)
+        return training, validation, LBFGS(training, start)
     adam = TorchAdam(
-        objective_of(surrogate, dataset.x_train, dataset.dx_train, trial.loss, trial.device, trial.precision),
+        of(*samples, minimised=trial.loss, precision=trial.precision),
         learning_rate=trial.learning_rate,
         batch_size=trial.batch_size,
         epochs=trial.epochs,
@@ -214,7 +257,7 @@ def begun(
         weight_decay=trial.weight_decay if isinstance(trial, AdamW) else None,
         seed=trial.seed,
     )
-    return surrogate, training, validation, adam
+    return training, validation, adam
 
 
 def source_of(network: OwnNetwork, expected: str, options: Mapping[str, Any], seed: int) -> Source:
@@ -243,12 +286,12 @@ def objective_of(
     x: np.ndarray,
     dx: np.ndarray,
     minimised: Minimised = "nmse",
-    device: str = "cpu",
     precision: str = "double",
+    device: torch.device = CPU,
 ) -> TorchObjective:
     """The loss of `surrogate`, with any weights, at states `x` and rates `dx` (m, 2r) in their units."""
     module = surrogate.source.build(len(surrogate.state_names))
-    module = module.to(device_of(device), torch.float32 if precision == "single" else torch.float64)
+    module = module.to(device, PRECISIONS[precision])
     objective = TorchObjective(
         module, scaled_states(surrogate.scaling, x), scaled_rates(surrogate.scaling, dx), minimised
     )

@@ -189,7 +189,7 @@ def _of_features() -> HNN:
     return replace(network(HNN, 2, (6,), "tanh"), scaling=scaling)
 
 
-HEAVY = ("even", "network")
+HEAVY = ("even", "network", "even entries")
 
 
 def _heavy(surrogate: PortHamiltonian) -> PortHamiltonian:

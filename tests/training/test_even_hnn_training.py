@@ -34,6 +34,15 @@ def test_normal_equations(dataset, monkeypatch):
     assert equations.loss == pytest.approx(r @ r, rel=1e-12)
     assert equations.loss == pytest.approx(objective.loss(network.parameters), rel=1e-12)
     np.testing.assert_allclose(equations.gradient, jacobian.T @ r, rtol=1e-6, atol=1e-8 * np.abs(r).max())
+    gradient = np.empty_like(network.parameters)
+    assert objective.gradient(network.parameters, gradient) == pytest.approx(equations.loss, rel=1e-12)
+    np.testing.assert_allclose(
+        0.5 * gradient, equations.gradient, rtol=1e-9, atol=1e-12 * np.abs(gradient).max()
+    )
+    step = 1e-2 * np.random.default_rng(2).normal(size=network.parameter_count)
+    second = residuals(network.parameters + step) - 2.0 * r + residuals(network.parameters - step)
+    found = objective.bend(network.parameters, step)
+    np.testing.assert_allclose(found, jacobian.T @ second, atol=1e-2 * np.abs(found).max())
     gram = jacobian.T @ jacobian
     np.testing.assert_allclose(equations.gram, gram, rtol=1e-5, atol=1e-7 * np.abs(gram).max())
 

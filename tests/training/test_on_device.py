@@ -42,12 +42,13 @@ def port_polynomial():
     return PolynomialPortHamiltonian(parameters, PAIRS, **TWO, exponents=exponents)
 
 
-def port_network(even):
+def port_network(even, factored=True):
     count = sum(int(np.prod(shape)) for shape in NetworkPortHamiltonian.shapes(2, 4, even))
-    floor = pack(0.1 * np.eye(2) + 0.01)
     return NetworkPortHamiltonian(
-        weights(count, 0.5), PAIRS, **TWO, floor=floor, even=even, hidden=(4,), activation="softplus"
-    )
+        weights(count, 0.5 if factored else 0.1), PAIRS, **TWO,
+        floor=pack((0.1 if factored else 1.0) * np.eye(2) + 0.01),
+        even=even, hidden=(4,), activation="softplus", factored=factored,
+    )  # fmt: skip
 
 
 POTENTIAL = Potential(np.array([[1, 0], [2, 1], [0, 4]]), np.array([0.3, -0.2, 0.5]))
@@ -61,6 +62,8 @@ SURROGATES = {
     "port-Hamiltonian polynomial": port_polynomial(),
     "port-Hamiltonian network": port_network(even=False),
     "even port-Hamiltonian network": port_network(even=True),
+    "port-Hamiltonian network of entries": port_network(even=False, factored=False),
+    "even port-Hamiltonian network of entries": port_network(even=True, factored=False),
     "port-Hamiltonian polynomial with a potential": replace(port_polynomial(), potential=POTENTIAL),
 }
 STEP = Integrator(method="dop853_fixed", step_s=0.002)

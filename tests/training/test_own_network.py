@@ -16,13 +16,15 @@ from flexsurr.config.study import Integrator
 from flexsurr.config.trial import trial_of
 from flexsurr.simulation import simulate
 from flexsurr.surrogates import Hamiltonian, compiled, load, save
-from flexsurr.training import fit, nmse, split_dataset
+from flexsurr.training import fit, lbfgs, nmse, split_dataset
 from flexsurr.training.adam import Adam
 from flexsurr.training.networks import from_torch, to_torch
 from flexsurr.training.objective import Objective
 from flexsurr.training.torch_training import (
+    CPU,
     TorchAdam,
     TorchObjective,
+    begun_on,
     device_of,
     objective_of,
     source_of,
@@ -133,6 +135,67 @@ def test_adam_takes_the_steps_of_the_compiled_one(decay):
         assert optimiser.epoch() == pytest.approx(reference.epoch(), rel=1e-9)
     found = in_our_order(ours, optimiser.parameters)
     np.testing.assert_allclose(found, reference.parameters, rtol=1e-9, atol=1e-11)
+
+
+@pytest.mark.parametrize("architecture", ["mlp", "hnn", "dissipative_hnn"])
+def test_on_a_device_networks_of_flexsurr_take_the_steps_of_their_compiled_form(architecture):
+    settings = {"architecture": architecture, "hidden": (4, 3), "activation": "atan", "device": "auto"}
+    steps = {"learning_rate": 3e-3, "batch_size": 16, "epochs": 3}
+    surrogate = network(DATASET, architecture, (4, 3))
+    ours = Objective.of(surrogate, DATASET.x_train, DATASET.dx_train)
+    trial = trial_of(**settings, **steps, optimiser="adam_cosine")
+    _, training, validation, optimiser = begun_on(CPU, trial, surrogate, DATASET)
+    reference = Adam(
+        ours, surrogate.parameters, **steps, cosine=True, seed=0, weight_decay=0.0, precision="double"
+    )
+    for _ in range(3):
+        assert optimiser.epoch() == pytest.approx(reference.epoch(), rel=1e-9)
+    np.testing.assert_allclose(optimiser.parameters, reference.parameters, rtol=1e-9, atol=1e-11)
+    held_out = Objective.of(surrogate, DATASET.x_validation, DATASET.dx_validation)
+    for objective, expected in ((training, ours), (validation, held_out)):
+        loss = expected.loss(reference.parameters)
+        assert objective.loss(reference.parameters) == pytest.approx(loss, rel=1e-9)
+    trial = trial_of(**settings, optimiser="lbfgs", epochs=3)
+    *_, optimiser = begun_on(CPU, trial, surrogate, DATASET)
+    reference = lbfgs.LBFGS(ours, surrogate.parameters)
+    for _ in range(3):
+        assert optimiser.epoch() == pytest.approx(reference.epoch(), rel=1e-8)
+    np.testing.assert_allclose(optimiser.parameters, reference.parameters, rtol=1e-7, atol=1e-9)
+
+
+def test_without_a_graphics_processor_auto_is_compiled_code(tmp_path, monkeypatch):
+    monkeypatch.setattr("torch.cuda.is_available", lambda: False)
+    hnn = {"architecture": "hnn", "hidden": (4,), "activation": "atan", "optimiser": "lbfgs", "epochs": 3}
+    fits = [
+        fit(trial_of(**hnn, device=device), DATASET, tmp_path / device).surrogate
+        for device in ("cpu", "auto")
+    ]
+    np.testing.assert_array_equal(fits[0].parameters, fits[1].parameters)
+    assert "device" not in trial_of(**hnn, device="cpu").model_dump()  # its runs keep their names
+    with pytest.raises(ConfigurationError, match="device: cuda is not available"):
+        fit(trial_of(**hnn, device="cuda"), DATASET, tmp_path / "cuda")
+
+
+@pytest.mark.parametrize(
+    ("settings", "why"),
+    [
+        (
+            {"architecture": "hnn", "hidden": (4,), "activation": "atan"},
+            "levenberg_marquardt trains this hnn by compiled code, on the CPU; on a device: lbfgs, adam, ",
+        ),
+        (
+            {"architecture": "even_hnn", "hidden": (4,), "activation": "atan"},
+            "levenberg_marquardt trains this even_hnn by compiled code, on the CPU$",
+        ),
+        (
+            {"architecture": "network", "hidden": (4,), "activation": "atan", "optimiser": "lbfgs"},
+            "on the CPU$",
+        ),
+    ],
+)
+def test_what_no_device_trains_is_refused_with_its_reason(settings, why):
+    with pytest.raises(ValueError, match=f"^device: .*{why}"):
+        trial_of(**settings, device="cuda")
 
 
 def test_losses_are_made_piece_by_piece(monkeypatch):

@@ -1,4 +1,4 @@
-"""Port-Hamiltonian networks: derivatives of their residuals, and the two stages of their training."""
+"""Port-Hamiltonian networks: derivatives of their residuals, and what trains them."""
 
 from dataclasses import fields, replace
 
@@ -86,6 +86,11 @@ def test_normal_equations(dataset, forward, monkeypatch):
     np.testing.assert_allclose(found.gram, gram, atol=1e-8 * np.max(np.abs(gram)))
     np.testing.assert_allclose(found.gradient, gradient, atol=1e-8 * np.max(np.abs(gradient)))
     assert found.loss == pytest.approx(errors @ errors) == pytest.approx(objective.loss(parameters))
+    step = 1e-2 * np.random.default_rng(2).normal(size=parameters.size)
+    around = (residuals(objective, parameters + sign * step).ravel() for sign in (1.0, -1.0))
+    second = sum(around) - 2.0 * errors
+    bent = objective.bend(parameters, step)
+    np.testing.assert_allclose(bent, jacobian.T @ second, atol=1e-2 * np.max(np.abs(bent)))
 
 
 def test_the_forward_loss_is_the_nmse():
@@ -127,7 +132,8 @@ def with_mass(mass):
     """The samples of EVEN with this matrix `mass` (2, 2) at every configuration."""
     masses = np.broadcast_to(mass, (len(EVEN.x_train), 2, 2)).copy()
     known = {field.name: getattr(EVEN, field.name) for field in fields(EVEN)}
-    return ConfigurationSamples(**known, mass=masses, stiffness=np.eye(2), damping=0.1 * np.eye(2))
+    matrices = {"stiffness": np.eye(2), "damping": 0.1 * np.eye(2)}
+    return ConfigurationSamples(**known, mass=masses, forces=-EVEN.x_train[:, :2], **matrices)
 
 
 def test_where_the_mass_matrix_is_known_it_is_what_is_learned(tmp_path):
