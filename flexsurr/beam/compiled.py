@@ -19,11 +19,11 @@ from flexsurr.beam.spatial_sweep import SpatialChain, spatial_work_size
 from flexsurr.beam.tip_sweep import sweep_tips
 from flexsurr.config.structure import JOINTS
 from flexsurr.simulation.history import histories_kernel
-from flexsurr.simulation.rhs import Array, evaluate, rates
+from flexsurr.simulation.rhs import Array, ByKernel, rates
 
 
 @dataclass(frozen=True, eq=False)
-class CompiledBeam(BeamModel):
+class CompiledBeam(ByKernel, BeamModel):
     """The right-hand side as a kernel that compiled integrators step."""
 
     @cached_property
@@ -46,13 +46,6 @@ class CompiledBeam(BeamModel):
         else:
             size = spatial_work_size if chain(structure).uniform else rigid_work_size
         return size(structure.elements, self.projection.coordinates)
-
-    def derivative(self, t: float, x: Array) -> Array:
-        """ẋ (2r,) at states x (2r,)."""
-        x = np.ascontiguousarray(x, dtype=np.float64)
-        dx = np.empty_like(x)
-        evaluate(self.kernel, float(t), x, dx, np.empty(self.work_size))
-        return dx
 
     def energy(self, x: Array) -> Array:
         """As every model's; many states of real numbers by compiled code."""

@@ -9,7 +9,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -32,40 +32,22 @@ from flexsurr.beam.projection import ModalBasis, Projection, projection
 from flexsurr.beam.rigid_load_sweep import RigidLoaded, rigid_load_work_size
 from flexsurr.config.structure import Structure
 from flexsurr.simulation.history import factor, histories_kernel
-from flexsurr.simulation.rhs import Array, CompiledModel, Model, evaluate
+from flexsurr.simulation.rhs import Array, ByKernel, CompiledModel, Forced, Model
 
 _STEP = 1e-30
 
 
 @dataclass(frozen=True, eq=False)
-class LoadedModel(ABC):
-    """A model and a load; subclasses say how Q is computed."""
+class LoadedModel(Forced, ABC):
+    """A model with states (η, p) of the projection, and a load; subclasses say how Q is computed."""
 
-    model: Any  # a Model with states (η, p) of the projection
     projection: Projection
     load: Load
 
     @property
-    def state_names(self) -> tuple[str, ...]:
-        """Those of the model."""
-        names: tuple[str, ...] = self.model.state_names
-        return names
-
-    @property
-    def state_units(self) -> tuple[str, ...]:
-        """Those of the model."""
-        units: tuple[str, ...] = self.model.state_units
-        return units
-
-    @property
-    def breakpoints(self) -> tuple[float, ...]:
-        """Times [s] at which the load, or the model itself, may jump."""
-        return tuple(sorted({*self.model.breakpoints, *load_breakpoints(self.load)}))
-
-    @property
-    def energy(self) -> Any:
-        """The model's own energy, without the work of the load; AttributeError where it has none."""
-        return self.model.energy
+    def jumps(self) -> tuple[float, ...]:
+        """Times [s] at which the load may jump."""
+        return load_breakpoints(self.load)
 
     def tip(self, x: Array) -> Array:
         """(..., 3) position of the tip [m] at states x (..., 2r)."""
@@ -184,7 +166,7 @@ def planar_arms(frame: Plane, now: Acting) -> Array:
     return np.vstack([arms, couples])
 
 
-class CompiledLoad(LoadedModel):
+class CompiledLoad(ByKernel, LoadedModel):
     """Model and load in one kernel, the cheapest that fits the chain and the load."""
 
     @cached_property
@@ -232,13 +214,6 @@ class CompiledLoad(LoadedModel):
         elements = self.projection.structure.elements
         turned = 0 if self.clamp is None else clamp_work_size(elements)
         return int(max(self.model.work_size, turned, sizes[self._sweep](elements)))
-
-    def derivative(self, t: float, x: Array) -> Array:
-        """ẋ (2r,) at time t [s] and states x (2r,)."""
-        x = np.ascontiguousarray(x, dtype=np.float64)
-        dx = np.empty_like(x)
-        evaluate(self.kernel, float(t), x, dx, np.empty(self.work_size))
-        return dx
 
 
 def loaded(

@@ -21,7 +21,7 @@ from flexsurr.flight.equations_of_motion import (
 )
 from flexsurr.flight.modes import FreeModes
 from flexsurr.simulation.mapping import CompiledMapping
-from flexsurr.simulation.rhs import Array, evaluate
+from flexsurr.simulation.rhs import Array, ByKernel
 
 TO_BODY = np.diag([-1.0, 1.0, -1.0])
 """From geometry axes (x aft, z up) to body axes (x forward, z down); a rotation, so for axial vectors too."""
@@ -39,7 +39,7 @@ class Doublet:
 
 
 @dataclass(frozen=True, eq=False)
-class FlightModel:
+class FlightModel(ByKernel):
     """A flexible aircraft with constant thrust [N] and controls (6,) [rad], and a doublet on top.
 
     Its states are those of `flexsurr.flight.equations_of_motion`. `chosen` are the numbers (from 1) of the
@@ -85,12 +85,6 @@ class FlightModel:
     def kernel(self) -> FlexibleAircraft:
         """The constants of the equations of motion."""
         return _kernel(self)
-
-    def derivative(self, t: float, x: Array) -> Array:
-        """ẋ at `t` [s] and state `x` (d,)."""
-        dx = np.empty_like(x)
-        evaluate(self.kernel, t, x, dx, np.empty(self.work_size))
-        return dx
 
     def energy(self, x: Array) -> Array:
         """Kinetic, potential (of height) and elastic energy [J] of states (..., d)."""

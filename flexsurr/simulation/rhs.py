@@ -9,6 +9,7 @@ disk between processes.
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
@@ -67,6 +68,51 @@ class CompiledModel(Model, Protocol):
         ...
 
 
+class ByKernel:
+    """What every CompiledModel does in the same way."""
+
+    def derivative(self: CompiledModel, t: float, x: Array) -> Array:
+        """ẋ (d,) at time `t` [s] and state `x` (d,), through the kernel."""
+        x = np.ascontiguousarray(x, dtype=np.float64)
+        dx = np.empty_like(x)
+        evaluate(self.kernel, float(t), x, dx, np.empty(self.work_size))
+        return dx
+
+
+@dataclass(frozen=True, eq=False)
+class Forced:
+    """A model and what acts on it besides, which a subclass adds to its rates."""
+
+    model: Any  # a Model; what more it has, as an energy, is passed on
+
+    @property
+    def state_names(self) -> tuple[str, ...]:
+        """Those of the model."""
+        names: tuple[str, ...] = self.model.state_names
+        return names
+
+    @property
+    def state_units(self) -> tuple[str, ...]:
+        """Those of the model."""
+        units: tuple[str, ...] = self.model.state_units
+        return units
+
+    @property
+    def jumps(self) -> tuple[float, ...]:
+        """Times [s] at which what acts may jump."""
+        return ()
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Times [s] at which the rates may jump: those, and the model's own."""
+        return tuple(sorted({*self.model.breakpoints, *self.jumps}))
+
+    @property
+    def energy(self) -> Any:
+        """The model's own energy, without the work of what acts; AttributeError where it has none."""
+        return self.model.energy
+
+
 def rhs(kernel: Any, t: float, x: Array, dx: Array, work: Array) -> None:
     """Write ẋ = f(t, x) into `dx` (d,). `work` is scratch of at least the model's `work_size`.
 
@@ -85,12 +131,19 @@ def implements_rhs(
     counts, whose atomic operations cost as much as a small kernel. `inline` puts them into every stage of
     an integrator; long equations are better called, for a dozen copies take long to compile.
     """
-    options = {"fastmath": FLOATING_POINT, "error_model": "numpy", "_nrt": False, "forceinline": inline}
+    return registered(rhs, kernel_class, forceinline=inline)
+
+
+def registered(
+    generic: Callable[..., None], kernel_class: type, **options: Any
+) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Register the decorated function (kernel, t, x, dx, work) -> None as `generic` of `kernel_class`."""
+    options = {"fastmath": FLOATING_POINT, "error_model": "numpy", "_nrt": False, **options}
 
     check_belongs(kernel_class)
 
     def register(equations: Callable[..., None]) -> Callable[..., None]:
-        @overload(rhs, jit_options=options)
+        @overload(generic, jit_options=options)
         def resolve(kernel, t, x, dx, work):
             if isinstance(kernel, types.BaseNamedTuple) and kernel.instance_class is kernel_class:
                 return equations

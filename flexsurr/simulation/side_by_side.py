@@ -10,16 +10,15 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit, types
-from numba.extending import overload
+from numba import njit
 
 from flexsurr.config.study import Integrator, IntegratorMethod
-from flexsurr.kernel_cache import check_belongs, not_compiled
+from flexsurr.kernel_cache import not_compiled
 from flexsurr.simulation.dimension import LANES, LARGEST_CONSTANT, SideBySide, dimension, states
 from flexsurr.simulation.explicit import RungeKutta4, RungeKutta8
 from flexsurr.simulation.fixed_step import ROUNDING, advance
 from flexsurr.simulation.outcome import COMPLETED, NOT_FINITE, Outcome, from_compiled
-from flexsurr.simulation.rhs import FLOATING_POINT, Array, Model, implements_rhs
+from flexsurr.simulation.rhs import FLOATING_POINT, Array, Model, implements_rhs, registered
 
 _METHODS: dict[IntegratorMethod, Callable[[Any], NamedTuple]] = {
     "rk4": RungeKutta4,
@@ -48,21 +47,8 @@ def implements_rhs_of_block(
     `work` has `rows` of LANES values. An innermost loop over trajectories, that reads no coefficient from
     an array, is vectorised; so loop over terms or neurons outside, and keep sums in `dx`.
     """
-    options = {"fastmath": FLOATING_POINT, "error_model": "numpy", "_nrt": False}
-
-    check_belongs(kernel_class)
     _rows[kernel_class] = rows
-
-    def register(equations: Callable[..., None]) -> Callable[..., None]:
-        @overload(rhs_of_block, jit_options=options)
-        def resolve(kernel, t, x, dx, work):
-            if isinstance(kernel, types.BaseNamedTuple) and kernel.instance_class is kernel_class:
-                return equations
-            return None
-
-        return equations
-
-    return register
+    return registered(rhs_of_block, kernel_class)
 
 
 @implements_rhs(Block, inline=False)

@@ -8,8 +8,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from flexsurr.simulation.history import (
     HistoriesKernel,
     History,
@@ -18,7 +16,7 @@ from flexsurr.simulation.history import (
     history_factor,
 )
 from flexsurr.simulation.mapping import mapping
-from flexsurr.simulation.rhs import Array, evaluate, implements_rhs, rhs
+from flexsurr.simulation.rhs import ByKernel, Forced, implements_rhs, rhs
 from flexsurr.surrogates.learned_map import LearnedMap
 
 
@@ -47,14 +45,13 @@ def _learned_load(kernel, t, x, dx, work):
 
 
 @dataclass(frozen=True, eq=False)
-class LearnedLoad:
-    """A CompiledModel: `model`, whose states are (η, p), under a load of learned generalised forces.
+class LearnedLoad(ByKernel, Forced):
+    """A CompiledModel: the compiled `model` of states (η, p) under a load of learned generalised forces.
 
     `forces` maps η (r,) to Q̂ (k r,) at factors of 1, one load after the other, each with its history. Raises
     ValueError where their numbers don't fit.
     """
 
-    model: Any  # a CompiledModel; what more it has, as an energy, is passed on
     forces: LearnedMap
     histories: tuple[History, ...]
 
@@ -68,27 +65,9 @@ class LearnedLoad:
             )
 
     @property
-    def state_names(self) -> tuple[str, ...]:
-        """Those of the model."""
-        names: tuple[str, ...] = self.model.state_names
-        return names
-
-    @property
-    def state_units(self) -> tuple[str, ...]:
-        """Those of the model."""
-        units: tuple[str, ...] = self.model.state_units
-        return units
-
-    @property
-    def breakpoints(self) -> tuple[float, ...]:
-        """Times [s] at which the load, or the model itself, may jump."""
-        own = {time for history in self.histories for time in breakpoints(history)}
-        return tuple(sorted({*self.model.breakpoints, *own}))
-
-    @property
-    def energy(self) -> Any:
-        """The model's own energy, without the work of the load; AttributeError where it has none."""
-        return self.model.energy
+    def jumps(self) -> tuple[float, ...]:
+        """Times [s] at which the load may jump."""
+        return tuple(time for history in self.histories for time in breakpoints(history))
 
     @cached_property
     def _compiled(self) -> tuple[NamedTuple, int]:
@@ -105,10 +84,3 @@ class LearnedLoad:
     def work_size(self) -> int:
         """Model and load use the same scratch, one after the other."""
         return int(max(self.model.work_size, self._compiled[1]))
-
-    def derivative(self, t: float, x: Array) -> Array:
-        """ẋ (2r,) at time t [s] and states x (2r,)."""
-        x = np.ascontiguousarray(x, dtype=np.float64)
-        dx = np.empty_like(x)
-        evaluate(self.kernel, float(t), x, dx, np.empty(self.work_size))
-        return dx

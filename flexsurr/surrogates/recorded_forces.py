@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flexsurr.simulation.rhs import Array, implements_rhs, rhs
+from flexsurr.simulation.rhs import Array, Forced, implements_rhs, rhs
 
 
 class RecordedForcesKernel(NamedTuple):
@@ -36,14 +36,13 @@ def _recorded_forces(kernel, t, x, dx, work):
 
 
 @dataclass(frozen=True, eq=False)
-class RecordedForces:
+class RecordedForces(Forced):
     """A model whose states are (q, p), under forces `u` (m, r) recorded at times `t` (m,) [s].
 
     Between samples forces are straight lines, beyond the first and the last as they are there. It is a
     CompiledModel if `model` is one. Raises ValueError where the forces do not fit the states.
     """
 
-    model: Any
     t: Array
     u: Array
 
@@ -53,24 +52,6 @@ class RecordedForces:
             raise ValueError(
                 f"forces of shape {self.u.shape} do not fit; allowed: {shape}, two samples or more"
             )
-
-    @property
-    def state_names(self) -> tuple[str, ...]:
-        """Those of the model."""
-        names: tuple[str, ...] = self.model.state_names
-        return names
-
-    @property
-    def state_units(self) -> tuple[str, ...]:
-        """Those of the model."""
-        units: tuple[str, ...] = self.model.state_units
-        return units
-
-    @property
-    def breakpoints(self) -> tuple[float, ...]:
-        """Times [s] at which the model itself may jump: forces bend, but do not."""
-        points: tuple[float, ...] = self.model.breakpoints
-        return points
 
     @cached_property
     def kernel(self) -> NamedTuple:

@@ -6,7 +6,7 @@ from typing import Any, ClassVar, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 
-from flexsurr.simulation.rhs import Array, evaluate
+from flexsurr.simulation.rhs import Array, ByKernel
 from flexsurr.surrogates.scaling import StateScaling, rates_of, scaled_states
 
 
@@ -99,17 +99,11 @@ class FormOfSurrogate:
 
 
 @dataclass(frozen=True, eq=False)
-class CompiledSurrogate(FormOfSurrogate):
+class CompiledSurrogate(ByKernel, FormOfSurrogate):
     """A CompiledModel."""
 
     kernel: NamedTuple
     work_size: int
-
-    def derivative(self, t: float, x: Array) -> Array:
-        """ẋ (2r,) at the state `x` (2r,), through the compiled kernel."""
-        dx = np.empty(len(self.state_names))
-        evaluate(self.kernel, t, np.ascontiguousarray(x, dtype=np.float64), dx, np.empty(self.work_size))
-        return dx
 
 
 @dataclass(frozen=True, eq=False)
