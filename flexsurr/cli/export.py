@@ -27,8 +27,7 @@ from flexsurr.flight.model import FlightModel
 from flexsurr.flight.trim import TrimNotFound, trim
 from flexsurr.storage import replacing
 from flexsurr.surrogates import LearnedMap, SurrogateFileError, load_map
-from flexsurr.surrogates.archive import form_of
-from flexsurr.surrogates.saved import MAP_FORMAT
+from flexsurr.surrogates.saved import MAP_FORMAT, form_of
 from flexsurr.training.saved_surrogate import load_surrogate
 
 FORMS: dict[str, tuple[str, Callable[[ExportedModel], str | bytes]]] = {

@@ -23,7 +23,7 @@ from flexsurr.simulation import Trajectory, simulate, simulate_ensemble
 from flexsurr.simulation.rhs import Array, Model
 from flexsurr.storage import Manifest, read_shards
 from flexsurr.surrogates import Hamiltonian, compiled
-from flexsurr.surrogates.recorded_forces import RecordedForces
+from flexsurr.surrogates.forces import RecordedForces
 
 CURVE_POINTS = 400
 """At least so many points draw a smooth curve, however few samples were recorded."""

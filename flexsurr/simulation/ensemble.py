@@ -9,13 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexsurr.config.study import Integrator
-from flexsurr.simulation.compiled_methods import COMPILED
 from flexsurr.simulation.dimension import LANES
-from flexsurr.simulation.outcome import Outcome
 from flexsurr.simulation.python_kernel import calls_python
 from flexsurr.simulation.rhs import Array, Model
 from flexsurr.simulation.side_by_side import run_block, takes
-from flexsurr.simulation.simulate import check_times, simulate
+from flexsurr.simulation.simulate import COMPILED, check_times, simulate
+from flexsurr.simulation.trajectory import Outcome
 
 Observe = Callable[[slice, Array], Array]
 """What is kept of some trajectories, (k, ...), of which numbers and states x (k, m, d) are given."""

@@ -12,9 +12,11 @@ from numba import njit, types
 from numba.extending import overload
 
 from flexsurr.kernel_cache import not_compiled
-from flexsurr.simulation.dimension import ORDERED, states
-from flexsurr.simulation.outcome import COMPLETED, NOT_FINITE
-from flexsurr.simulation.rhs import Array
+from flexsurr.simulation.dimension import ORDERED, Dimension, states
+from flexsurr.simulation.rhs import Array, rhs
+from flexsurr.simulation.tableaus import DOP853, RK4
+from flexsurr.simulation.trajectory import COMPLETED, NOT_FINITE
+from flexsurr.simulation.unrolled import dop853_step, rk4_step
 
 # Sample times such as k·0.01 differ by an interval plus rounding; that must not cost a further step.
 ROUNDING = 1e-9
@@ -92,3 +94,35 @@ def run_fixed_step(method, kernel, t, x, longest_step, work):
         for i in range(d):
             x[row, i] = state[i]
     return t.size, t[-1], evaluations, steps, COMPLETED
+
+
+_RK4_STAGES = len(RK4.c)
+_DOP853_STAGES = len(DOP853.method.c)
+
+
+class RungeKutta4(NamedTuple):
+    """The classical method of order 4, four evaluations a step."""
+
+    constant: Dimension
+    rows: int = _RK4_STAGES + 1
+
+
+class RungeKutta8(NamedTuple):
+    """DOP853's method of order 8, twelve evaluations a step."""
+
+    constant: Dimension
+    rows: int = _DOP853_STAGES + 1
+
+
+@implements_advance(RungeKutta4)
+def _advance_4(method, kernel, t, h, x, scratch, work):
+    rhs(kernel, t, x, scratch[0], work)
+    rk4_step(kernel, t, h, x, x, scratch, scratch[_RK4_STAGES], work, method.constant)
+    return _RK4_STAGES
+
+
+@implements_advance(RungeKutta8)
+def _advance_8(method, kernel, t, h, x, scratch, work):
+    rhs(kernel, t, x, scratch[0], work)
+    dop853_step(kernel, t, h, x, x, scratch, scratch[_DOP853_STAGES], work, method.constant)
+    return _DOP853_STAGES

@@ -14,9 +14,9 @@ from numba import njit
 
 from flexsurr.simulation.dimension import Dimension
 from flexsurr.simulation.fixed_step import implements_advance
-from flexsurr.simulation.outcome import NOT_CONVERGED, NOT_FINITE
 from flexsurr.simulation.rhs import rhs
 from flexsurr.simulation.tableaus import GAUSS_LEGENDRE_4, GAUSS_LEGENDRE_6
+from flexsurr.simulation.trajectory import NOT_CONVERGED, NOT_FINITE
 from flexsurr.simulation.unrolled import (
     gauss_legendre_4_extrapolate,
     gauss_legendre_4_increment,

@@ -9,13 +9,13 @@ section IV.8; the numbers of equations below are theirs.
 import numpy as np
 from numba import njit
 
+from flexsurr.simulation.adaptive_explicit import first_step, smallest_step
 from flexsurr.simulation.dimension import ORDERED
 from flexsurr.simulation.fixed_step import all_finite
 from flexsurr.simulation.jacobian import jacobian
 from flexsurr.simulation.linear_solvers import factorise, solve
-from flexsurr.simulation.outcome import COMPLETED, NOT_FINITE, STEP_TOO_SMALL
 from flexsurr.simulation.rhs import rhs
-from flexsurr.simulation.step_control import first_step, smallest_step
+from flexsurr.simulation.trajectory import COMPLETED, NOT_FINITE, STEP_TOO_SMALL
 
 _STAGES = 3
 _C = np.array([(4 - np.sqrt(6)) / 10, (4 + np.sqrt(6)) / 10, 1.0])

@@ -17,8 +17,7 @@ from numba import njit, types
 from numba.extending import overload
 from numpy.typing import NDArray
 
-from flexsurr.kernel_cache import check_belongs, not_compiled
-from flexsurr.simulation.machine_code import name_by_content
+from flexsurr.kernel_cache import check_belongs, name_by_content, not_compiled
 
 name_by_content()
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from flexsurr.config.study import Integrator
-from flexsurr.simulation.outcome import Outcome
 from flexsurr.simulation.rhs import Array, Model
+from flexsurr.simulation.trajectory import Outcome
 
 SOLVERS = {
     "scipy_radau": "Radau",

@@ -15,10 +15,9 @@ from numba import njit
 from flexsurr.config.study import Integrator, IntegratorMethod
 from flexsurr.kernel_cache import not_compiled
 from flexsurr.simulation.dimension import LANES, LARGEST_CONSTANT, SideBySide, dimension, states
-from flexsurr.simulation.explicit import RungeKutta4, RungeKutta8
-from flexsurr.simulation.fixed_step import ROUNDING, advance
-from flexsurr.simulation.outcome import COMPLETED, NOT_FINITE, Outcome, from_compiled
+from flexsurr.simulation.fixed_step import ROUNDING, RungeKutta4, RungeKutta8, advance
 from flexsurr.simulation.rhs import FLOATING_POINT, Array, Model, implements_rhs, registered
+from flexsurr.simulation.trajectory import COMPLETED, NOT_FINITE, Outcome, from_compiled
 
 _METHODS: dict[IntegratorMethod, Callable[[Any], NamedTuple]] = {
     "rk4": RungeKutta4,

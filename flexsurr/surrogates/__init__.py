@@ -1,20 +1,19 @@
 """Learned right-hand sides: architectures, scaling, compiled and saved forms."""
 
 from flexsurr.surrogates.activations import ACTIVATIONS
-from flexsurr.surrogates.archive import SurrogateFileError
 from flexsurr.surrogates.even_hnn import EvenHNN
+from flexsurr.surrogates.forces import LearnedLoad
 from flexsurr.surrogates.hnn import HNN, DissipativeHNN
-from flexsurr.surrogates.learned_load import LearnedLoad
+from flexsurr.surrogates.layers import Network
 from flexsurr.surrogates.learned_map import Intervals, LearnedMap, generalised_force
 from flexsurr.surrogates.mlp import MLP
-from flexsurr.surrogates.network import Network
 from flexsurr.surrogates.network_map import NetworkMap
 from flexsurr.surrogates.polynomial import PolynomialHamiltonian
 from flexsurr.surrogates.polynomial_map import PolynomialMap
 from flexsurr.surrogates.port_hamiltonian import PortHamiltonian
 from flexsurr.surrogates.port_hamiltonian_network import NetworkPortHamiltonian
 from flexsurr.surrogates.port_hamiltonian_polynomial import PolynomialPortHamiltonian
-from flexsurr.surrogates.saved import load, load_map, load_model, save, save_map
+from flexsurr.surrogates.saved import SurrogateFileError, load, load_map, load_model, save, save_map
 from flexsurr.surrogates.scaling import (
     FeatureScaling,
     PairScaling,

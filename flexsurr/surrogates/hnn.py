@@ -14,8 +14,7 @@ from flexsurr.simulation.dimension import LANES
 from flexsurr.simulation.rhs import FLOATING_POINT, Array, implements_rhs
 from flexsurr.simulation.side_by_side import implements_rhs_of_block
 from flexsurr.surrogates.activations import slope, two_slopes, value
-from flexsurr.surrogates.layers import Dense, Shapes, back, forward, offset
-from flexsurr.surrogates.network import Network
+from flexsurr.surrogates.layers import Dense, Network, Shapes, back, forward, offset
 from flexsurr.surrogates.scaling import FeatureScaling, scaled_kernel, scaled_states
 from flexsurr.surrogates.surrogate import symplectic
 

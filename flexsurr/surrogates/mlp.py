@@ -9,8 +9,7 @@ from flexsurr.simulation.dimension import LANES
 from flexsurr.simulation.rhs import Array, implements_rhs
 from flexsurr.simulation.side_by_side import implements_rhs_of_block
 from flexsurr.surrogates.activations import value
-from flexsurr.surrogates.layers import Dense, Shapes, forward, layer_shapes, offset
-from flexsurr.surrogates.network import Network
+from flexsurr.surrogates.layers import Dense, Network, Shapes, forward, layer_shapes, offset
 from flexsurr.surrogates.scaling import origins
 
 

@@ -34,8 +34,8 @@ from flexsurr.surrogates.packed import pack, packed_size, semidefinite_factor, s
 from flexsurr.surrogates.potential import Potential
 from flexsurr.training.configuration_samples import ConfigurationSamples
 from flexsurr.training.dataset import SampleSource, for_each_piece
+from flexsurr.training.least_squares import Triangle
 from flexsurr.training.losses import FieldErrors
-from flexsurr.training.triangle import Triangle
 
 CHUNK = 1 << 22  # elements of the matrix that exist at a time: 32 MB
 POTENTIAL_DEGREE = 10

@@ -1,9 +1,7 @@
-"""A polynomial Hamiltonian's coefficients by linear least squares on the field.
+"""Linear least squares over any number of rows, and by it a polynomial Hamiltonian's coefficients.
 
 Hamilton's equations are linear in H, so a polynomial's coefficients need no iteration: the columns are
-the fields of the single monomials. Rows are reduced by QR piece by piece, which bounds the memory
-without squaring the condition number as normal equations would; the small triangle is solved by
-pivoted QR, its columns normalised.
+the fields of the single monomials.
 
 Terms that a structure does not have only cost time and accuracy, so subsets are tried too: with
 kinetic energy quadratic in p (every mechanical system), and even in q (symmetric structures). The one
@@ -12,6 +10,7 @@ with the fewest terms among those that validate about as well as the best is kep
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import lstsq, qr
 
 from flexsurr.simulation.rhs import Array
 from flexsurr.storage import Scales
@@ -25,7 +24,42 @@ from flexsurr.surrogates.monomials import (
 from flexsurr.surrogates.surrogate import symplectic
 from flexsurr.training.dataset import SampleSource, for_each_piece
 from flexsurr.training.losses import FieldErrors, weights_of_variance
-from flexsurr.training.triangle import Triangle
+
+
+class Triangle:
+    """The R factor of the rows [matrix, targets] seen so far; the matrix has `unknowns` columns.
+
+    It is what the next block of rows is joined to (the sequential tall-skinny QR of Demmel, Grigori, Hoemmen
+    & Langou, SIAM J. Sci. Comput. 34, 2012): memory is bounded, and the condition number is not squared as
+    normal equations would.
+    """
+
+    def __init__(self, unknowns: int, targets: int = 1) -> None:
+        self._unknowns = unknowns
+        self._triangle = np.empty((0, unknowns + targets))
+
+    def add(self, rows: Array) -> None:
+        """Join `rows` (m, unknowns + targets), the targets last. LinAlgError where they are not finite."""
+        (triangle,) = qr(np.concatenate([self._triangle, rows]), mode="r", overwrite_a=True)
+        self._triangle = triangle[: triangle.shape[1]]
+
+    def solve(self, chosen: NDArray[np.bool_] | None = None) -> Array:
+        """The solution in the `chosen` unknowns (a mask; by default all), the others being zero and left out.
+
+        A vector for one target, for several a column each. Rank-revealing: pivoted QR with normalised
+        columns; what the rows leave undetermined is kept small.
+        """
+        matrix, targets = np.split(self._triangle, [self._unknowns], axis=1)
+        if chosen is not None:
+            matrix = matrix[:, chosen]
+        norms = np.linalg.norm(matrix, axis=0)
+        norms[norms == 0.0] = 1.0
+        threshold = np.finfo(np.float64).eps * len(norms)
+        solution, *_ = lstsq(matrix / norms, targets, cond=threshold, lapack_driver="gelsy")
+        solution = solution / norms[:, None]
+        found: Array = solution[:, 0] if solution.shape[1] == 1 else solution
+        return found
+
 
 CHUNK = 1 << 21  # elements of the matrix that exist at a time: 16 MB
 AS_GOOD = 2.0  # losses within this factor of the least count as equal

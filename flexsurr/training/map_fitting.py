@@ -23,11 +23,11 @@ from flexsurr.surrogates.monomials import evaluate_monomials, monomials_to_degre
 from flexsurr.surrogates.network_map import side_by_side, with_products
 from flexsurr.training.epochs import Ending, Fit, Limits, Progress, Report, run_epochs, train
 from flexsurr.training.initialisation import initial_weights
+from flexsurr.training.least_squares import Triangle
 from flexsurr.training.levenberg_marquardt import LevenbergMarquardt, second_order
 from flexsurr.training.losses import nmse, spreads
 from flexsurr.training.map_data import MapData, nmse_per_output
 from flexsurr.training.one_hidden_layer import OneHiddenLayer
-from flexsurr.training.triangle import Triangle
 
 DEGREES = {"linear": 1, "quadratic": 2}
 BLOCK = 4096  # samples at a time

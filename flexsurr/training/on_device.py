@@ -13,10 +13,10 @@ from torch import Tensor, nn
 from flexsurr.config.study import Integrator
 from flexsurr.simulation.ensemble import Ensemble, Observe
 from flexsurr.simulation.fixed_step import ROUNDING
-from flexsurr.simulation.outcome import COMPLETED, NOT_FINITE, from_compiled
 from flexsurr.simulation.rhs import Array
 from flexsurr.simulation.simulate import check_times
 from flexsurr.simulation.tableaus import DOP853, RK4, ExplicitTableau, Row
+from flexsurr.simulation.trajectory import COMPLETED, NOT_FINITE, from_compiled
 from flexsurr.surrogates import (
     EvenHNN,
     Network,

@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 from numba import njit
 
 from flexsurr.config.activation import Activation
-from flexsurr.surrogates.activations import ACTIVATIONS, curvature, slope, value
-from flexsurr.surrogates.elementary import exponential, logarithm
+from flexsurr.surrogates.activations import ACTIVATIONS, curvature, exponential, logarithm, slope, value
 
 EPS = np.finfo(np.float64).eps
 

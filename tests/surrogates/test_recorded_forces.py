@@ -8,7 +8,7 @@ from random_surrogates import network
 
 from flexsurr.simulation.rhs import evaluate
 from flexsurr.surrogates import HNN, compiled
-from flexsurr.surrogates.recorded_forces import RecordedForces
+from flexsurr.surrogates.forces import RecordedForces
 
 GENERATOR = np.random.default_rng(0)
 T = np.cumsum(GENERATOR.uniform(0.1, 1.0, size=7))
