@@ -15,6 +15,7 @@ ARCHITECTURE_COLUMNS = (
     "hidden",
     "activation",
     "degree",
+    "mass_matrix",
     "optimiser",
     "seed",
     "run_id",

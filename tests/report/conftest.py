@@ -329,6 +329,7 @@ def relatives() -> pd.DataFrame:
             "hidden": "32",
             "activation": "silu",
             "degree": None,
+            "mass_matrix": None,
             "optimiser": "levenberg_marquardt",
             "seed": 0,
             "status": "finished",

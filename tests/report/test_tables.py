@@ -23,7 +23,7 @@ CONTRACT = {
     "failed, wall_s_mean, wall_s_std, validation_nmse_mean, validation_nmse_std_decades, "
     "long_response_error_percent_mean, long_response_error_percent_std, diverged",
     "architectures": "study, variant, architecture, normalisation, scaling, dataset, hidden, activation, "
-    "degree, optimiser, seed, run_id, status, parameters, wall_s, train_nmse, validation_nmse, "
+    "degree, mass_matrix, optimiser, seed, run_id, status, parameters, wall_s, train_nmse, validation_nmse, "
     "held_out_nmse, long_response_error_percent_median, long_response_error_percent_worst, diverged, "
     "held_out_nmse_eta_1, held_out_nmse_p_1",
     "cost": "study, variant, response, model, implementation, integrator, simulations, wall_s_mean, "
