@@ -19,7 +19,7 @@ from flexsurr.simulation.trajectory import COMPLETED, NOT_FINITE
 from flexsurr.simulation.unrolled import dop853_step, rk4_step
 
 # Sample times such as k·0.01 differ by an interval plus rounding; that must not cost a further step.
-ROUNDING = 1e-9
+_ROUNDING = 1e-9
 
 _OPTIONS = {"fastmath": ORDERED, "error_model": "numpy", "_nrt": False, "forceinline": True}
 
@@ -53,6 +53,12 @@ def implements_advance(method_class: type) -> Callable[[Callable[..., int]], Cal
 
 
 @njit(error_model="numpy")
+def steps_within(interval, longest_step):
+    """The number of equal steps of at most `longest_step` that make an `interval`."""
+    return max(1, int(np.ceil(interval / longest_step * (1.0 - _ROUNDING))))
+
+
+@njit(error_model="numpy")
 def all_finite(x):
     """Whether every value of x (d,) is finite."""
     total = 0.0
@@ -81,7 +87,7 @@ def run_fixed_step(method, kernel, t, x, longest_step, work):
     for row in range(1, t.size):
         begin = t[row - 1]
         interval = t[row] - begin
-        count = max(1, int(np.ceil(interval / longest_step * (1.0 - ROUNDING))))
+        count = steps_within(interval, longest_step)
         h = interval / count
         for n in range(count):
             calls = advance(method, kernel, begin + n * h, h, state, scratch, work)

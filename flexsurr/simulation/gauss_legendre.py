@@ -7,6 +7,7 @@ over long times, not for stiffness. Source: E. Hairer, C. Lubich, G. Wanner, *Ge
 Integration*, 2nd ed., Springer 2006, sections II.1.3 and VIII.6.
 """
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -54,54 +55,35 @@ class GaussLegendre6(NamedTuple):
     rows: int = _STAGES_6 + _FURTHER_ROWS
 
 
-@implements_advance(GaussLegendre4)
-def _advance_4(method, kernel, t, h, x, scratch, work):
-    constant = method.constant
-    lost = scratch[_STAGES_4]
-    y = scratch[_STAGES_4 + 1]
-    new = scratch[_STAGES_4 + 2]
-    evaluations = 0
-    if scratch[0, 0] == scratch[0, 0]:
-        gauss_legendre_4_extrapolate(x, scratch, constant)
-    else:
-        evaluations = _begin(kernel, t, x, scratch, work, _STAGES_4)
-    previous = np.inf
-    for _ in range(_MOST_SWEEPS):
-        change = gauss_legendre_4_sweep(kernel, t, h, x, scratch, y, new, work, constant)
-        evaluations += _STAGES_4
-        verdict = _judge(change, previous)
-        if verdict == _CONVERGED:
-            gauss_legendre_4_increment(h, x, scratch, lost, constant)
-            return evaluations
-        if verdict < 0:
-            return verdict
-        previous = change
-    return -NOT_CONVERGED
+def _collocation(
+    stages: int, extrapolate: Callable[..., None], sweep: Callable[..., float], increment: Callable[..., None]
+) -> Callable[..., int]:
+    """The formula of a method, from the unrolled code of its tableau."""
 
+    def formula(method, kernel, t, h, x, scratch, work):
+        constant = method.constant
+        lost = scratch[stages]
+        y = scratch[stages + 1]
+        new = scratch[stages + 2]
+        evaluations = 0
+        if scratch[0, 0] == scratch[0, 0]:
+            extrapolate(x, scratch, constant)
+        else:
+            evaluations = _begin(kernel, t, x, scratch, work, stages)
+        previous = np.inf
+        for _ in range(_MOST_SWEEPS):
+            change = sweep(kernel, t, h, x, scratch, y, new, work, constant)
+            evaluations += stages
+            verdict = _judge(change, previous)
+            if verdict == _CONVERGED:
+                increment(h, x, scratch, lost, constant)
+                return evaluations
+            if verdict < 0:
+                return verdict
+            previous = change
+        return -NOT_CONVERGED
 
-@implements_advance(GaussLegendre6)
-def _advance_6(method, kernel, t, h, x, scratch, work):
-    constant = method.constant
-    lost = scratch[_STAGES_6]
-    y = scratch[_STAGES_6 + 1]
-    new = scratch[_STAGES_6 + 2]
-    evaluations = 0
-    if scratch[0, 0] == scratch[0, 0]:
-        gauss_legendre_6_extrapolate(x, scratch, constant)
-    else:
-        evaluations = _begin(kernel, t, x, scratch, work, _STAGES_6)
-    previous = np.inf
-    for _ in range(_MOST_SWEEPS):
-        change = gauss_legendre_6_sweep(kernel, t, h, x, scratch, y, new, work, constant)
-        evaluations += _STAGES_6
-        verdict = _judge(change, previous)
-        if verdict == _CONVERGED:
-            gauss_legendre_6_increment(h, x, scratch, lost, constant)
-            return evaluations
-        if verdict < 0:
-            return verdict
-        previous = change
-    return -NOT_CONVERGED
+    return formula
 
 
 @njit(error_model="numpy", _nrt=False)
@@ -126,3 +108,11 @@ def _judge(change, previous):
     if np.isfinite(previous) and change * change <= _NEGLIGIBLE * (previous - change):
         return _CONVERGED
     return _GOES_ON
+
+
+implements_advance(GaussLegendre4)(
+    _collocation(_STAGES_4, gauss_legendre_4_extrapolate, gauss_legendre_4_sweep, gauss_legendre_4_increment)
+)
+implements_advance(GaussLegendre6)(
+    _collocation(_STAGES_6, gauss_legendre_6_extrapolate, gauss_legendre_6_sweep, gauss_legendre_6_increment)
+)

@@ -15,7 +15,7 @@ from numba import njit
 from flexsurr.config.study import Integrator, IntegratorMethod
 from flexsurr.kernel_cache import not_compiled
 from flexsurr.simulation.dimension import LANES, LARGEST_CONSTANT, SideBySide, dimension, states
-from flexsurr.simulation.fixed_step import ROUNDING, RungeKutta4, RungeKutta8, advance
+from flexsurr.simulation.fixed_step import RungeKutta4, RungeKutta8, advance, steps_within
 from flexsurr.simulation.rhs import FLOATING_POINT, Array, Model, implements_rhs, registered
 from flexsurr.simulation.trajectory import COMPLETED, NOT_FINITE, Outcome, from_compiled
 
@@ -116,7 +116,7 @@ def run_side_by_side(method, kernel, t, x, longest_step, work, rows, end_s):
     for row in range(1, t.size):
         begin = t[row - 1]
         interval = t[row] - begin
-        count = max(1, int(np.ceil(interval / longest_step * (1.0 - ROUNDING))))
+        count = steps_within(interval, longest_step)
         h = interval / count
         for n in range(count):
             evaluations += advance(method, kernel, begin + n * h, h, state, scratch, work)

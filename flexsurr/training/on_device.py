@@ -12,7 +12,7 @@ from torch import Tensor, nn
 
 from flexsurr.config.study import Integrator
 from flexsurr.simulation.ensemble import Ensemble, Observe
-from flexsurr.simulation.fixed_step import ROUNDING
+from flexsurr.simulation.fixed_step import steps_within
 from flexsurr.simulation.rhs import Array
 from flexsurr.simulation.simulate import check_times
 from flexsurr.simulation.tableaus import DOP853, RK4, ExplicitTableau, Row
@@ -68,7 +68,7 @@ def simulate_on_device(
         steps = 0
         for row in range(1, t.size):
             interval = t[row] - t[row - 1]
-            count = max(1, int(np.ceil(interval / integrator.step_s * (1.0 - ROUNDING))))
+            count = steps_within(interval, integrator.step_s)
             for n in range(count):
                 x = _step(tableau, rates, x, interval / count)
                 steps += 1
