@@ -30,12 +30,18 @@ LONGEST_S = 10.0
 MARKS = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
 
 HNN = {"architecture": "hnn", "time_limit_s": LONGEST_S, "epochs": 100_000}
+FEW = {"samples_per_trajectory": 20}
 ADAM = {"optimiser": "adam_cosine", "epochs": 1500, "batch_size": 64, "learning_rate": 0.01}
 PAPER = {"optimiser": "adam", "batch_size": 64, "learning_rate": 1e-5, "precision": "single", "epochs": 5000}
 TRIALS = {
     "polynomial, degree 6": {"architecture": "polynomial", "degree": 6, "optimiser": "least_squares"},
     "polynomial, degree 10": {"architecture": "polynomial", "degree": 10, "optimiser": "least_squares"},
     "LM, half_log 16": HNN | {"hidden": (16,), "activation": "half_log"},
+    "LM, half_log 16, 20 of each": HNN | FEW | {"hidden": (16,), "activation": "half_log"},
+    "LM, even half_log 8": HNN | {"architecture": "even_hnn", "hidden": (8,), "activation": "half_log"},
+    "LM, even half_log 8, 20 of each": HNN
+    | FEW
+    | {"architecture": "even_hnn", "hidden": (8,), "activation": "half_log"},
     "LM, half_log 32": HNN | {"hidden": (32,), "activation": "half_log"},
     "LM, atan 16": HNN | {"hidden": (16,), "activation": "atan"},
     "LM, squareplus 16": HNN | {"hidden": (16,), "activation": "squareplus"},
