@@ -242,7 +242,7 @@ def test_options_of_ones_own_network_are_dimensions_of_the_search():
         ({"device": "tpu"}, "cuda"),
         ({"weight_decay": 0.1}, "weight_decay does nothing with lbfgs"),
         (
-            {"architecture": "hnn", "hidden": (8,), "activation": "elu", "device": "cpu"},
+            {"architecture": "even_hnn", "hidden": (8,), "activation": "elu", "device": "cpu"},
             "device does nothing",
         ),
     ],
