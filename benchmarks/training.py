@@ -10,12 +10,12 @@ import time
 from pathlib import Path
 
 from cantilever import cantilever_dataset
+from flexsurr.config.feature_limits import load_feature_limits
 
 from flexsurr.aerodynamics.features import COEFFICIENT_UNITS, COEFFICIENTS, FEATURE_UNITS, FEATURES
 from flexsurr.aerodynamics.sampling import draw_features, feature_intervals
 from flexsurr.aerodynamics.vortex_lattice import rebuilt
 from flexsurr.config.aircraft import load_aircraft
-from flexsurr.config.feature_limits import load_feature_limits
 from flexsurr.config.trial import trial_of
 from flexsurr.flight.airliner import flexible_airframe
 from flexsurr.flight.modes import free_modes
