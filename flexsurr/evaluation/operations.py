@@ -21,7 +21,7 @@ from flexsurr.simulation.python_kernel import calls_python
 from flexsurr.simulation.rhs import Array, CompiledModel, rhs
 
 LIBRARY = 30
-"""What a function of the C library counts for: what `surrogates.elementary.exponential` takes, nearly."""
+"""What a function of the C library counts for: what `surrogates.activations.exponential` takes, nearly."""
 
 FREE = {"floor", "fabs", "abs", "isnan", "isfinite", "copysign"}
 """Functions that are no arithmetic; comparisons, signs and whole numbers are none either."""
