@@ -6,7 +6,7 @@ With a surrogate as the model this is the paper's augmented surrogate (its Fig. 
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal, NamedTuple
@@ -45,7 +45,7 @@ class LoadedModel(Forced, ABC):
     load: Load
 
     @property
-    def jumps(self) -> tuple[float, ...]:
+    def jumps(self) -> Iterable[float]:
         """Times [s] at which the load may jump."""
         return load_breakpoints(self.load)
 

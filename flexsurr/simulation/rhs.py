@@ -8,7 +8,7 @@ class of an argument (and not by a function passed in) is what lets numba keep t
 disk between processes.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any, NamedTuple, Protocol, runtime_checkable
 
@@ -97,7 +97,7 @@ class Forced:
         return units
 
     @property
-    def jumps(self) -> tuple[float, ...]:
+    def jumps(self) -> Iterable[float]:
         """Times [s] at which what acts may jump."""
         return ()
 

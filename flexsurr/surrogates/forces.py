@@ -4,6 +4,7 @@ A load of fixed shape follows one history, F(t) = s(t) f, and so do its generali
 several loads at once the forces add up. Recorded forces u(t) act on the momenta, ṗ = f_p(x) + u(t).
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -67,9 +68,9 @@ class LearnedLoad(ByKernel, Forced):
             )
 
     @property
-    def jumps(self) -> tuple[float, ...]:
+    def jumps(self) -> Iterable[float]:
         """Times [s] at which the load may jump."""
-        return tuple(time for history in self.histories for time in breakpoints(history))
+        return (time for history in self.histories for time in breakpoints(history))
 
     @cached_property
     def _compiled(self) -> tuple[NamedTuple, int]:

@@ -164,8 +164,8 @@ def _surrogate(header: dict[str, Any], arrays: dict[str, np.ndarray]) -> Surroga
     common |= {"hidden": tuple(header["hidden"]), "activation": header["activation"]}
     if architecture == NetworkPortHamiltonian.architecture:
         common["potential"] = Potential.kept(arrays)
-        given = {key: bool(header[key]) for key in ("even", "factored") if key in header}
-        return NetworkPortHamiltonian(**common, floor=arrays["floor"], **given)
+        common |= {key: bool(header[key]) for key in ("even", "factored") if key in header}
+        return NetworkPortHamiltonian(**common, floor=arrays["floor"])
     if architecture == EvenHNN.architecture:
         return EvenHNN(**common)
     return NETWORKS[architecture](**common)

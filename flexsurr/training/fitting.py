@@ -148,6 +148,7 @@ def _begun(trial: Iterative, dataset: Dataset) -> tuple[Surrogate, Loss, Loss, O
         from flexsurr.training.torch_training import begun  # here, for it imports torch
 
         return begun(trial, SCALINGS[trial.scaling](dataset.scales), dataset)
+    assert isinstance(trial, FieldNetwork)
     network = _untrained(trial, dataset)
     if trial.device != "cpu":
         from flexsurr.training.torch_training import begun_on, device_of  # here, for it imports torch

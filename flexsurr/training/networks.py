@@ -67,8 +67,9 @@ class TorchNetwork(nn.Module):
 
 def order_in_torch(network: Network) -> NDArray[np.int64]:
     """Where each of a module's weights lies in the vector of `network`: torch has weights (to, from)."""
-    shapes = network.shapes(len(network.state_names), network.hidden)
-    return np.concatenate([each.T.ravel() for each in views(np.arange(network.parameter_count), shapes)])
+    places = np.arange(float(network.parameter_count))
+    arrays = views(places, network.shapes(len(network.state_names), network.hidden))
+    return np.concatenate([each.T.ravel() for each in arrays]).astype(np.int64)
 
 
 def to_torch(network: Network, dtype: torch.dtype = torch.float64) -> TorchNetwork:
