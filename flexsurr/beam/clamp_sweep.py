@@ -6,7 +6,6 @@ One sweep out with the model's own rates, which it has just written, and one bac
 import math
 from typing import Any, NamedTuple
 
-import numpy as np
 from numba import njit
 
 from flexsurr.beam.rigid_load_sweep import add_couples_on_bodies
@@ -15,7 +14,7 @@ from flexsurr.beam.rigid_sweep import (
     RigidElements,
     add_forces_on_bodies,
     sweep_bodies,
-    sweep_body_velocities,
+    sweep_roots,
 )
 from flexsurr.beam.spatial_sweep import add_projected, joint_values
 from flexsurr.simulation.history import HistoriesKernel, history_factor, history_integral, history_slope
@@ -42,7 +41,7 @@ class ClampTurned(NamedTuple):
 
 def clamp_work_size(elements: int) -> int:
     """Scratch of `clamp_turned_rhs` beyond the model's."""
-    return (BODY + 14) * elements
+    return (BODY + 20) * elements
 
 
 @njit(fastmath=FLOATING_POINT, error_model="numpy", forceinline=True, cache=True)
@@ -90,8 +89,11 @@ def tilt(kernel, t):
 
 
 @njit(fastmath=FLOATING_POINT, error_model="numpy", cache=True)
-def clamp_forces(kernel, t, bodies, velocities, spins):
-    """Put what the masses and elements feel in place of their velocities (3 N,) and spins (3 N,)."""
+def clamp_forces(kernel, t, bodies, rates, roots, on_masses, couples):
+    """Write what the masses (3 N,) and the elements (3 N,), if their inertia is exact, feel.
+
+    For joint rates (4 N,) with which the elements' roots move as `roots` (6 N,) says.
+    """
     n = kernel.masses.shape[0]
     factor, growth = history_factor(kernel.history, 0, t), history_slope(kernel.history, 0, t)
     w = factor * kernel.rate[0], factor * kernel.rate[1], factor * kernel.rate[2]
@@ -99,17 +101,30 @@ def clamp_forces(kernel, t, bodies, velocities, spins):
     g = tilt(kernel, t)
     x, y, z = kernel.arm[0], kernel.arm[1], kernel.arm[2]
     for i in range(n):
-        b, v = bodies[BODY * i : BODY * (i + 1)], velocities[3 * i : 3 * (i + 1)]
+        b, root = bodies[BODY * i : BODY * (i + 1)], roots[6 * i : 6 * (i + 1)]
+        psi, theta, phi, stretch = rates[i], rates[n + i], rates[2 * n + i], rates[3 * n + i]
+        turns = (
+            root[0] + psi * b[0] + theta * b[3] + phi * b[6],
+            root[1] + psi * b[1] + theta * b[4] + phi * b[7],
+            root[2] + psi * b[2] + theta * b[5] + phi * b[8],
+        )
+        v = crossed(turns, (b[15], b[16], b[17]))
         place = x + b[15], y + b[16], z + b[17]
         x, y, z = x + b[12], y + b[13], z + b[14]
         e, u = crossed(dw, place), crossed(w, place)
-        c = crossed(w, (u[0] + 2.0 * v[0], u[1] + 2.0 * v[1], u[2] + 2.0 * v[2]))
+        c = crossed(
+            w,
+            (
+                u[0] + 2.0 * (root[3] + stretch * b[9] + v[0]),
+                u[1] + 2.0 * (root[4] + stretch * b[10] + v[1]),
+                u[2] + 2.0 * (root[5] + stretch * b[11] + v[2]),
+            ),
+        )
         for k in range(3):
-            v[k] = kernel.masses[i] * (g[k] - e[k] - c[k])
+            on_masses[3 * i + k] = kernel.masses[i] * (g[k] - e[k] - c[k])
         if kernel.exact:
-            tensor, s = kernel.tensors[i], spins[3 * i : 3 * (i + 1)]
-            spin = along_own_axes(b, (s[0], s[1], s[2]))
-            clamp, faster = along_own_axes(b, w), along_own_axes(b, dw)
+            tensor = kernel.tensors[i]
+            spin, clamp, faster = along_own_axes(b, turns), along_own_axes(b, w), along_own_axes(b, dw)
             carried = crossed(spin, clamp)
             whole = clamp[0] + spin[0], clamp[1] + spin[1], clamp[2] + spin[2]
             change = faster[0] - carried[0], faster[1] - carried[1], faster[2] - carried[2]
@@ -121,7 +136,7 @@ def clamp_forces(kernel, t, bodies, velocities, spins):
                 alone[2] - ours[2] - p[2],
             )
             for k in range(3):
-                s[k] = m[0] * b[18 + k] + m[1] * b[21 + k] + m[2] * b[24 + k]
+                couples[3 * i + k] = m[0] * b[18 + k] + m[1] * b[21 + k] + m[2] * b[24 + k]
 
 
 @implements_rhs(ClampTurned, inline=False)
@@ -130,20 +145,15 @@ def clamp_turned_rhs(kernel, t, x, dx, work):
     rhs(kernel.model, t, x, dx, work)
     n = kernel.masses.shape[0]
     bodies, scratch = work[: BODY * n], work[BODY * n :]
-    forces, rates = scratch[: 4 * n], scratch[4 * n : 8 * n]
-    velocities, spins = scratch[8 * n : 11 * n], scratch[11 * n : 14 * n]
+    forces, rates, roots = scratch[: 4 * n], scratch[4 * n : 8 * n], scratch[8 * n : 14 * n]
+    on_masses, couples = scratch[14 * n : 17 * n], scratch[17 * n : 20 * n]
     sweep_bodies(kernel.modes, kernel.elements, x, bodies, scratch)
     joint_values(kernel.modes, dx, rates)
-    if not kernel.exact:
-        spins = spins[:0]
-    # An untyped 0 would compile the sweep once more, for that number alone.
-    axial = kernel.elements.axial
-    sweep_body_velocities(bodies, axial, np.int64(0), rates, velocities, spins)
-    clamp_forces(kernel, t, bodies, velocities, spins)
+    sweep_roots(bodies, kernel.elements.axial, rates, roots)
+    clamp_forces(kernel, t, bodies, rates, roots, on_masses, couples)
     for i in range(4 * n):
         forces[i] = 0.0
-    on_masses = velocities.reshape((n, 3))
-    add_forces_on_bodies(bodies, on_masses, kernel.unloaded, kernel.unloaded[0], forces)
+    add_forces_on_bodies(bodies, on_masses.reshape((n, 3)), kernel.unloaded, kernel.unloaded[0], forces)
     if kernel.exact:
-        add_couples_on_bodies(bodies, spins, forces)
+        add_couples_on_bodies(bodies, couples, forces)
     add_projected(kernel.modes, forces, dx)

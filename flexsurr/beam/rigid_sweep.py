@@ -173,20 +173,20 @@ def sweep_bodies(modes, elements, x, bodies, work):
 
 
 @njit(fastmath=FLOATING_POINT, error_model="numpy", cache=True)
-def sweep_body_velocities(bodies, axial, first, rates, masses, turning):
-    """Velocities of the centres of gravity (3 N,) for joint rates (4 N,) that are zero before `first`.
+def sweep_column(kernel, bodies, inertia, first, rates, column):
+    """A column of the Jacobian for joint rates (4 N,) that are zero before `first`, weighted.
 
-    Without `axial` those of the axial joints are. `turning` (3 N,) takes, if it is long enough, the elements'
-    angular velocities.
+    Velocities of the centres of gravity (3 N,) times √m, and where the inertia is exact the spins of the
+    elements (3 N,) times what `turn_inertia` has found.
     """
-    n = masses.shape[0] // 3
-    turns = turning.shape[0] > 0
+    n = kernel.masses.shape[0]
+    exact, axial = kernel.exact, kernel.elements.axial
     w0 = w1 = w2 = v0 = v1 = v2 = 0.0
     for i in range(3 * first):
-        masses[i] = 0.0
-    if turns:
-        for i in range(3 * first):
-            turning[i] = 0.0
+        column[i] = 0.0
+    if exact:
+        for i in range(3 * n, 3 * (n + first)):
+            column[i] = 0.0
     for i in range(first, n):
         b = bodies[BODY * i : BODY * (i + 1)]
         psi, theta, phi = rates[i], rates[n + i], rates[2 * n + i]
@@ -196,13 +196,15 @@ def sweep_body_velocities(bodies, axial, first, rates, masses, turning):
         if axial:
             stretch = rates[3 * n + i]
             v0, v1, v2 = v0 + stretch * b[9], v1 + stretch * b[10], v2 + stretch * b[11]
-        out = masses[3 * i : 3 * (i + 1)]
-        out[0] = v0 + w1 * b[17] - w2 * b[16]
-        out[1] = v1 + w2 * b[15] - w0 * b[17]
-        out[2] = v2 + w0 * b[16] - w1 * b[15]
-        if turns:
-            spin = turning[3 * i : 3 * (i + 1)]
-            spin[0], spin[1], spin[2] = w0, w1, w2
+        root, out = kernel.root_masses[i], column[3 * i : 3 * (i + 1)]
+        out[0] = root * (v0 + w1 * b[17] - w2 * b[16])
+        out[1] = root * (v1 + w2 * b[15] - w0 * b[17])
+        out[2] = root * (v2 + w0 * b[16] - w1 * b[15])
+        if exact:
+            a, spin = inertia[9 * i : 9 * (i + 1)], column[3 * (n + i) : 3 * (n + i + 1)]
+            spin[0] = a[0] * w0 + a[1] * w1 + a[2] * w2
+            spin[1] = a[3] * w0 + a[4] * w1 + a[5] * w2
+            spin[2] = a[6] * w0 + a[7] * w1 + a[8] * w2
         v0, v1, v2 = (
             v0 + w1 * b[14] - w2 * b[13],
             v1 + w2 * b[12] - w0 * b[14],
@@ -257,7 +259,7 @@ def add_forces_on_bodies(bodies, weights, on_middles, on_tip, forces):
 
 @njit(fastmath=FLOATING_POINT, error_model="numpy", cache=True)
 def turn_inertia(root_tensors, bodies, turned):
-    """Write the roots of the inertia in the common frame (9 N,): B with BᵀB = R I Rᵀ, B = A Rᵀ."""
+    """Write the roots of the inertia in the clamp's frame (9 N,): B = A Rᵀ, with BᵀB = R I Rᵀ."""
     for i in range(root_tensors.shape[0]):
         b, a, out = bodies[BODY * i : BODY * (i + 1)], root_tensors[i], turned[9 * i : 9 * (i + 1)]
         x0, x1, x2 = b[18], b[19], b[20]
@@ -335,22 +337,6 @@ def add_gyroscopic_forces_of_bodies(kernel, bodies, inertia, rates, roots, motio
             forces[3 * n + i] += b[9] * k0 + b[10] * k1 + b[11] * k2
 
 
-@njit(fastmath=FLOATING_POINT, error_model="numpy", cache=True)
-def weigh(kernel, inertia, first, column):
-    """Multiply a column of velocities (3 N,), and of spins (3 N,) if any, by the roots of their inertia."""
-    n = kernel.masses.shape[0]
-    for i in range(first, n):
-        root = kernel.root_masses[i]
-        for k in range(3 * i, 3 * (i + 1)):
-            column[k] *= root
-    if kernel.exact:
-        for i in range(first, n):
-            spin, a = column[3 * (n + i) : 3 * (n + i + 1)], inertia[9 * i : 9 * (i + 1)]
-            w0, w1, w2 = spin[0], spin[1], spin[2]
-            for k in range(3):
-                spin[k] = a[3 * k] * w0 + a[3 * k + 1] * w1 + a[3 * k + 2] * w2
-
-
 @implements_rhs(RigidChain, inline=False)
 def rigid_chain_rhs(kernel, t, x, dx, work):
     """Eqs. 6, 7 and 10."""
@@ -362,15 +348,12 @@ def rigid_chain_rhs(kernel, t, x, dx, work):
     roots, forces, inertia = scratch[10 * n : 16 * n], scratch[16 * n : 20 * n], scratch[20 * n : 29 * n]
     mass = scratch[29 * n :]
     rows = 6 * n if kernel.exact else 3 * n
-    axial = kernel.elements.axial
     sweep_bodies(kernel.modes, kernel.elements, x, bodies, scratch)
     if kernel.exact:
         turn_inertia(kernel.root_tensors, bodies, inertia)
     for k in range(r):
         column = jacobian[rows * k : rows * (k + 1)]
-        first = kernel.first[k]
-        sweep_body_velocities(bodies, axial, first, kernel.modes[k], column[: 3 * n], column[3 * n :])
-        weigh(kernel, inertia, first, column)
+        sweep_column(kernel, bodies, inertia, kernel.first[k], kernel.modes[k], column)
         for j in range(k + 1):
             total = kernel.rotary_inertia[k, j]
             other = jacobian[rows * j : rows * (j + 1)]
@@ -402,6 +385,6 @@ def rigid_chain_rhs(kernel, t, x, dx, work):
             column, rate = jacobian[rows * k : rows * (k + 1)], dx[k]
             for i in range(rows):
                 motion[i] += column[i] * rate
-        sweep_roots(bodies, axial, rates, roots)
+        sweep_roots(bodies, kernel.elements.axial, rates, roots)
         add_gyroscopic_forces_of_bodies(kernel, bodies, inertia, rates, roots, motion, forces)
     add_projected(kernel.modes, forces, dx)
