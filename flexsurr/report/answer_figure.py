@@ -9,6 +9,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from flexsurr.report.answer import ALLOWED_PERCENT, name_of, times
 from flexsurr.report.labels import freeze_layout, place_labels
@@ -80,9 +81,6 @@ def _panel(ax: Axes, rows: pd.DataFrame, shades: Mapping[str, str]) -> None:
     ax.fill_between([1.0, right], bottom, ALLOWED_PERCENT, color=PAYS, zorder=0)
     ax.axvline(1.0, color="#555555", linewidth=0.8, zorder=1)
     ax.axhline(ALLOWED_PERCENT, color="#555555", linewidth=0.8, zorder=1)
-    ax.annotate(
-        "pays", (1.0, 0.0), xycoords="axes fraction", xytext=(-4, 4), textcoords="offset points", ha="right"
-    )
     shown = rows[rows["tip_error_percent"].notna()]
     heights = _heights(shown)
     for row, height in zip(shown.to_dict("records"), heights, strict=True):
@@ -101,10 +99,16 @@ def _panel(ax: Axes, rows: pd.DataFrame, shades: Mapping[str, str]) -> None:
     place_labels(
         ax,
         [(row["times_as_fast"], max(row["tip_error_percent"], LEAST_PERCENT)) for row in best],
-        [f"{name_of(row['model'])}, {row['response']}: {times(row['times_as_fast'])}×" for row in best],
+        [_label(row) for row in best],
         [colour(family(row["model"])) if has_family(row["model"]) else shades[row["model"]] for row in best],
         obstacles=list(zip(shown["times_as_fast"], heights, strict=True)),
     )
+
+
+def _label(row: "pd.Series[Any]") -> str:
+    """In short lines, for a panel is narrow."""
+    name = name_of(row["model"]).replace(" (", "\n(")
+    return f"{name}\n{row['response']}: {times(row['times_as_fast'])}×"
 
 
 def _best(rows: pd.DataFrame) -> "pd.Series[Any] | None":
@@ -118,7 +122,7 @@ def _shades(models: Iterable[str]) -> dict[str, str]:
     return {model: colour(model) if has_family(model) else next(others) for model in dict.fromkeys(models)}
 
 
-def _handles(table: pd.DataFrame) -> list[Line2D]:
+def _handles(table: pd.DataFrame) -> list[Line2D | Patch]:
     # one entry a colour: those of further sweeps are paler than the model's own
     named: dict[str, str] = {}
     for model, shade in _shades(table["model"]).items():
@@ -126,7 +130,7 @@ def _handles(table: pd.DataFrame) -> list[Line2D]:
         named.setdefault(
             shade, f"{label(family(model))}, further sweeps" if is_of_another else name_of(model)
         )
-    handles = [
+    handles: list[Line2D | Patch] = [
         Line2D([], [], color=shade, marker="o", linestyle="", label=text) for shade, text in named.items()
     ]
     handles += [
@@ -140,4 +144,5 @@ def _handles(table: pd.DataFrame) -> list[Line2D]:
             line = Line2D([], [], color="#555555", marker="o", markerfacecolor=fill, linestyle="")
             line.set_label(VARIANTS[variant])
             handles.append(line)
+    handles.append(Patch(color=PAYS, label=f"pays: faster, and within {ALLOWED_PERCENT:g} %"))
     return handles
