@@ -114,7 +114,7 @@ def test_the_figure_has_a_point_a_row_and_names_the_best(cost, tmp_path):
     points = [line for line in ax.lines if line.get_marker() not in ("None", None, "")]
     assert len(points) == len(table)
     named = [text.get_text() for text in ax.texts if "×" in text.get_text()]
-    assert named == (["HNN, free: 2.5×"] if "hnn" in set(table["model"]) else [])
+    assert named == (["HNN\nfree: 2.5×"] if "hnn" in set(table["model"]) else [])
     save(figure, tmp_path / "answer")
 
 
