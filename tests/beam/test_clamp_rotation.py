@@ -233,22 +233,22 @@ def test_the_spin_up_of_the_arm():
 
     m v̈ + EI v⁗ − (T v′)′ − m Ω² v = −m Ω̇ x is of first order in v: within v²/L² of the arm.
     """
-    basis, history = basis_of(arm(10, "in_plane"), 3), SmoothRamp(rise_s=15.0)
+    basis, history = basis_of(arm(10, "in_plane"), 2), SmoothRamp(rise_s=15.0)
     spin_up = ClampRotation(rate_rad_s=6.0, history=history)
     model = loaded(reduced_order(basis, "hamiltonian", "numpy"), basis, spin_up, "numpy")
-    t = np.linspace(0.0, 20.0, 201)
-    integrator = Integrator(method="scipy_dop853", rtol=1e-6, atol=1e-9)
-    aside = model.tip(simulate(model, t, np.zeros(6), integrator).x)[:, 1]
+    t = np.linspace(0.0, 17.0, 171)
+    integrator = Integrator(method="scipy_dop853", rtol=1e-5, atol=1e-7)
+    aside = model.tip(simulate(model, t, np.zeros(4), integrator).x)[:, 1]
 
-    bending, stiffening, mass, outwards = blade(shapes=5)
+    bending, stiffening, mass, outwards = blade(shapes=4)
     springs, forces = (np.linalg.solve(mass, part) for part in (1.4e4 / 1.2e4 * bending, 10.0 * outwards))
-    turning = np.linalg.solve(mass, stiffening) - np.eye(5)
+    turning = np.linalg.solve(mass, stiffening) - np.eye(4)
 
     def rate(at, y):
         speed, growth = (6.0 * of(history, at) for of in (factor, slope))
-        return np.concatenate([y[5:], -(springs + speed**2 * turning) @ y[:5] - growth * forces])
+        return np.concatenate([y[4:], -(springs + speed**2 * turning) @ y[:4] - growth * forces])
 
-    linear = solve_ivp(rate, (0.0, 20.0), np.zeros(10), "Radau", t, rtol=1e-8, atol=1e-10).y[:5].sum(axis=0)
+    linear = solve_ivp(rate, (0.0, 17.0), np.zeros(8), "DOP853", t, rtol=1e-7, atol=1e-9).y[:4].sum(axis=0)
     assert -0.62 < aside.min() < -0.55
     np.testing.assert_allclose(aside, linear, atol=0.01 * np.abs(linear).max())
     assert np.abs(aside[t > 15.0]).max() < 0.02 * np.abs(aside).max()
