@@ -130,8 +130,10 @@ def learned_load_table(
     if tell_positions(learned.load):
         through = _targets(basis, kinematics, learned.load, eta)
         maps["kinematics"] = (kinematics.outputs, through, seen)
-    maps["polynomial"] = (learned.polynomial, learned.polynomial(eta), {})
-    maps["network"] = (learned.network, learned.network(eta), {})
+    # the same columns where no map tells positions, as of a load that follows
+    unseen = dict.fromkeys(seen, float("nan"))
+    maps["polynomial"] = (learned.polynomial, learned.polynomial(eta), unseen)
+    maps["network"] = (learned.network, learned.network(eta), unseen)
     exact = exact_forces(basis, learned.load, eta)
     rows = [
         {

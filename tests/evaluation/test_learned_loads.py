@@ -23,6 +23,7 @@ from flexsurr.evaluation.learned_loads import (
     learned_load_table,
     relative_error,
 )
+from flexsurr.report.tables import learned_loads
 from flexsurr.simulation import simulate
 from flexsurr.simulation.history import factor
 
@@ -112,6 +113,7 @@ def test_several_loads_that_follow_are_learned_each_with_its_history(twisted):
     assert learned.polynomial.output_names == tuple(f"Q{k}_of_load_{j}" for j in (1, 2) for k in (1, 2, 3))
     table = learned_load_table("study", twisted, "hamiltonian", learned, held_out).set_index("map")
     assert list(table.index) == ["polynomial", "network"]
+    assert learned_loads(table.reset_index())["tip_rms_over_length"].isna().all()
     assert table.loc["polynomial", "force_relative_error"] < 1e-3
     free = reduced_order(twisted, "hamiltonian", "numpy")
     under = loaded(free, twisted, load, "numpy")
