@@ -52,7 +52,7 @@ def test_every_figure_and_table_is_there_and_the_report(wing):
 
 def test_its_weight_is_learned_and_its_costs_are_known(wing):
     (selected,) = json.loads((wing.results / "selected" / f"{STUDY}.json").read_text()).values()
-    assert set(selected) == {"mlp", "port_hamiltonian"}
+    assert {"mlp", "port_hamiltonian"} <= set(selected)
     cost = pd.read_csv(wing.results / "tables" / "cost.csv")
     assert set(cost["response"]) == {"free", "forced"}
     assert {"rom", "mlp", "port_hamiltonian"} <= set(cost["model"])
