@@ -11,6 +11,7 @@ commands in one file do not rerun one another.
 
 import ast
 import hashlib
+import re
 from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
@@ -20,6 +21,8 @@ PACKAGE = "flexsurr"
 COMMANDS = "flexsurr.cli."
 VIEW = "flexsurr.tracking"
 ROOT = Path(__file__).resolve().parents[2]
+IMPORT = re.compile(rb"^[ \t]*((?:from[ \t]+[\w.]+[ \t]+)?import[ \t]+(?:\([^)]*\)|[^\n]*))", re.MULTILINE)
+"""A statement that imports something, at the beginning of a line."""
 
 
 def code_digest(part: str, root: Path = ROOT) -> str:
@@ -56,11 +59,24 @@ def _needs(root: Path, part: str) -> tuple[str, ...]:
 
 
 def _statements(root: Path, part: str) -> list[ast.stmt]:
-    """What counts of a module: all of it, or what one of its names is made of."""
+    """What imports something of what counts of a module: all of it, or what makes one of its names."""
     module, _, name = part.partition(":")
-    return _used(root, module, name) if name else _tree(root, module).body
+    return _used(root, module, name) if name else _import_statements(root, module)
 
 
+@cache
+def _import_statements(root: Path, module: str) -> list[ast.stmt]:
+    """Every import of a module. To parse the rest too would take a second for the whole package."""
+    found: list[ast.stmt] = []
+    for match in IMPORT.finditer(_file(root, module).read_bytes()):
+        try:
+            found += ast.parse(match[1]).body
+        except SyntaxError:  # words of a docstring
+            continue
+    return found
+
+
+@cache
 def _used(root: Path, module: str, name: str) -> list[ast.stmt]:
     """The statements of a module that define `name`, and in turn each name that they use.
 
@@ -150,7 +166,7 @@ def _defining(root: Path, source: str, name: str) -> str:
     if _exists(root, submodule):
         return submodule
     if _is_package(root, source) and _only_lists_names(root, source):
-        for node in ast.walk(_tree(root, source)):
+        for node in _import_statements(root, source):
             if isinstance(node, ast.ImportFrom):
                 for alias in node.names:
                     if (alias.asname or alias.name) == name:
@@ -184,6 +200,7 @@ def _passes_names_on(node: ast.stmt) -> bool:
     return False
 
 
+@cache
 def _is_package(root: Path, module: str) -> bool:
     return (root / Path(*module.split(".")) / "__init__.py").is_file()
 

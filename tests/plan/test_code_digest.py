@@ -1,9 +1,10 @@
+import ast
 from pathlib import Path
 
 import pytest
 
 from flexsurr.cli.index import function_of
-from flexsurr.workflow.code_digest import code_digest, parts
+from flexsurr.workflow.code_digest import PACKAGE, ROOT, _import_statements, code_digest, parts
 
 SOURCES = {
     "__init__.py": '"""Docstring."""\n__version__ = "1"\n',
@@ -130,6 +131,15 @@ def test_editing_a_file_changes_the_digests_that_count_it(tmp_path_factory, edit
         digests.append({command: code_digest(command, folder) for command in commands})
     before, after = digests
     assert {command for command in before if before[command] != after[command]} == changed
+
+
+def test_no_import_of_the_package_is_overlooked():
+    """They are found without parsing the rest of a file; here all of it is parsed."""
+    for path in (ROOT / PACKAGE).rglob("*.py"):
+        module = ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+        whole = ast.walk(ast.parse(path.read_bytes()))
+        imports = {ast.dump(node) for node in whole if isinstance(node, ast.Import | ast.ImportFrom)}
+        assert imports <= {ast.dump(node) for node in _import_statements(ROOT, module)}, module
 
 
 def test_a_missing_module_or_function_is_named(root):

@@ -74,9 +74,14 @@ def write(name, job):
 def job(rule, *keys, ending=None):
     """A function of wildcards that gives the file of the job of `rule`, and of what is no wildcard: `ending`."""
 
-    def path(wildcards):
-        values = [wildcards[key] for key in keys] + ([] if ending is None else [ending])
+    # Snakemake asks again each time that it looks for a job to start
+    @cache
+    def written(*values):
         return write(f"{rule}/{'-'.join(values)}", plan.job(rule, *values))
+
+    def path(wildcards):
+        values = [wildcards[key] for key in keys]
+        return written(*values, *([] if ending is None else [ending]))
 
     return path
 
