@@ -24,7 +24,7 @@ _PADDING = 0.8
 
 def freeze_layout(figure: Figure) -> None:
     """Lay the figure out for good, so that pixels can be counted on."""
-    figure.canvas.draw()
+    figure.draw_without_rendering()
     figure.set_layout_engine("none")
 
 

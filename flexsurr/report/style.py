@@ -11,6 +11,7 @@ import matplotlib
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
@@ -192,7 +193,7 @@ def fitting_legend(figure: Figure, handles: Sequence[Artist], loc: str) -> None:
     """A legend of the whole figure, outside its axes, in as few rows as fit its width."""
     for columns in range(len(handles), 0, -1):
         legend = figure.legend(handles=handles, loc=loc, ncols=columns)
-        figure.canvas.draw()
+        # measured, not drawn: to lay a whole figure out for each try takes seconds
         if legend.get_window_extent().width <= figure.bbox.width or columns == 1:
             return
         legend.remove()
@@ -210,14 +211,18 @@ def save(figure: Figure, stem: Path) -> tuple[Path, Path]:
 
     The bytes depend on the figure alone: no date, no version, no random identifiers.
     """
-    paths = (stem.with_name(f"{stem.name}.svg"), stem.with_name(f"{stem.name}.png"))
+    svg, png = (stem.with_name(f"{stem.name}{ending}") for ending in (".svg", ".png"))
     with matplotlib.rc_context():
         matplotlib.rcParams.update(STYLE)
-        for path, metadata in zip(paths, ({"Date": None, "Creator": None}, {"Software": None}), strict=True):
-            with replacing(path) as beside:
-                figure.savefig(beside, format=path.suffix[1:], metadata=metadata, dpi=PNG_DPI)
-            figure.set_layout_engine("none")  # it is laid out, and to do it again takes a third of a second
-    return paths
+        figure.dpi = PNG_DPI
+        # The canvases themselves, for `Figure.savefig` draws twice, and lays out anew for each format.
+        with replacing(svg) as beside:
+            FigureCanvasSVG(figure).print_svg(beside, metadata={"Date": None, "Creator": None})
+        figure.set_layout_engine("none")
+        figure.dpi = PNG_DPI  # an SVG is written in points
+        with replacing(png) as beside:
+            FigureCanvasAgg(figure).print_png(beside, metadata={"Software": None})
+    return svg, png
 
 
 INTEGRATOR_NAMES: dict[str, str] = {

@@ -88,9 +88,9 @@ def test_what_is_drawn_is_explained(figure):
 
 
 @pytest.mark.parametrize("name", OF_BEAMS)
-def test_saved_twice_it_is_the_same_file(name, request, tmp_path):
-    for attempt in ("first", "second"):
-        save(draw(name, request), tmp_path / attempt / name)
+def test_drawn_and_saved_twice_it_is_the_same_file(name, figure, request, tmp_path):
+    save(figure, tmp_path / "first" / name)
+    save(draw(name, request), tmp_path / "second" / name)
     for suffix in ("svg", "png"):
         first, second = (
             (tmp_path / attempt / f"{name}.{suffix}").read_bytes() for attempt in ("first", "second")
