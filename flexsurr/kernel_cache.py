@@ -21,7 +21,6 @@ import tempfile
 import time
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 PACKAGE = Path(__file__).parent
 KERNEL_FLOORS = ("simulation", "beam", "surrogates", "aerodynamics", "training", "flight")
@@ -78,15 +77,15 @@ def activate(*outside: str | Path, package: Path = PACKAGE) -> None:
         numba.config.CACHE_DIR = folder
 
 
-def check_belongs(kernel_class: type) -> None:
-    """Raise RuntimeError for a kernel from outside whose machine code would go into the package's folder.
+def keeps(kernel_class: type) -> bool:
+    """Whether the machine code of a kernel's equations is kept: not of a script's, compiled in each process.
 
-    Classes of a script pass: numba recompiles theirs in each process.
+    Raises RuntimeError for a kernel from outside whose code would go into the package's folder.
     """
     module = sys.modules.get(kernel_class.__module__)
     source = getattr(module, "__file__", None)
     if kernel_class.__module__ == "__main__" or source is None:
-        return
+        return False
     path = Path(source).resolve()
     ours = Path(os.environ.get(_VARIABLE, "")).name.startswith(_PREFIX)
     if ours and path not in _outside and not path.is_relative_to(PACKAGE):
@@ -94,6 +93,7 @@ def check_belongs(kernel_class: type) -> None:
             f"{kernel_class.__name__} is defined outside flexsurr: call flexsurr.kernel_cache.activate"
             f"({str(path)!r}) before importing flexsurr.simulation, or set {_VARIABLE} to a folder of yours"
         )
+    return True
 
 
 def _folder(name: str, package: Path) -> Path:
@@ -133,27 +133,3 @@ def _prune(place: Path) -> None:
             continue
         if stale:
             shutil.rmtree(folder, ignore_errors=True)
-
-
-def name_by_content() -> None:
-    """Have numba write the machine code of whatever it compiles from now on under a name of its content.
-
-    numba numbers these files in the order in which they come, by an index that it reads, extends and writes
-    back. Two processes that do so at once take the same number, and whoever reads the index afterwards may
-    run the code of another overload. Here the name follows from what is compiled, and the code is written
-    before the index that leads to it. What is left of the race is an index without one of two new entries:
-    that overload is compiled once more.
-    """
-    from numba.core.caching import IndexDataCacheFile
-
-    IndexDataCacheFile.save = _save
-
-
-def _save(file: Any, key: Any, data: Any) -> None:
-    """Write `data`, the machine code of the overload `key`, to where `file.load(key)` finds it."""
-    number = int(hashlib.sha256(file._dump(key)).hexdigest()[:15], 16)
-    name = file._data_name(number)
-    file._save_data(name, data)
-    overloads = file._load_index()
-    overloads[key] = name
-    file._save_index(overloads)

@@ -11,6 +11,8 @@ from multiprocessing import get_context
 from time import perf_counter
 from typing import TypeVar
 
+from flexsurr.simulation.machine_code import unless_compiled_elsewhere
+
 Result = TypeVar("Result")
 
 
@@ -50,8 +52,9 @@ def compile_ahead(firsts: Iterable[Callable[[], object]]) -> None:
     """Call each of `firsts` in one of as many child processes as there are cores, and wait for them.
 
     Each is the first call of something compiled, whose machine code the child leaves on the disk, where
-    this process finds it at its own first call. An error is left for that call too. Children are forks,
-    which end with this process: call it before anything has started threads.
+    this process finds it at its own first call. An error is left for that call too, and so is what another
+    job compiles meanwhile. Children are forks, which end with this process: call it before anything has
+    started threads.
     """
     waiting = list(firsts)
     number = min(cores(), len(waiting))
@@ -69,7 +72,7 @@ def compile_ahead(firsts: Iterable[Callable[[], object]]) -> None:
 
 def _call_all(calls: Iterable[Callable[[], object]]) -> None:
     for call in calls:
-        with suppress(Exception):
+        with suppress(Exception), unless_compiled_elsewhere():
             call()
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit, types
 from numba.extending import overload
 
-from flexsurr.kernel_cache import check_belongs, not_compiled
+from flexsurr.kernel_cache import keeps, not_compiled
 from flexsurr.simulation.rhs import FLOATING_POINT, Array
 
 
@@ -36,8 +36,7 @@ def implements_mapping(
     options: dict[str, Any] = {"fastmath": FLOATING_POINT, "error_model": "numpy", "forceinline": inline}
     # said either way: what is not said is taken over from the caller, equations that don't allocate
     options["_nrt"] = allocates
-
-    check_belongs(kernel_class)
+    options["cache"] = keeps(kernel_class)
 
     def register(equations: Callable[..., None]) -> Callable[..., None]:
         @overload(mapping, jit_options=options)

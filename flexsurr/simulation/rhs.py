@@ -17,9 +17,10 @@ from numba import njit, types
 from numba.extending import overload
 from numpy.typing import NDArray
 
-from flexsurr.kernel_cache import check_belongs, name_by_content, not_compiled
+from flexsurr.kernel_cache import keeps, not_compiled
+from flexsurr.simulation.machine_code import compile_once
 
-name_by_content()
+compile_once()
 
 Array = NDArray[np.float64]
 
@@ -138,8 +139,8 @@ def registered(
 ) -> Callable[[Callable[..., None]], Callable[..., None]]:
     """Register the decorated function (kernel, t, x, dx, work) -> None as `generic` of `kernel_class`."""
     options = {"fastmath": FLOATING_POINT, "error_model": "numpy", "_nrt": False, **options}
-
-    check_belongs(kernel_class)
+    # kept by themselves, they are compiled once for all integrators, and for every load
+    options["cache"] = keeps(kernel_class)
 
     def register(equations: Callable[..., None]) -> Callable[..., None]:
         @overload(generic, jit_options=options)

@@ -1,10 +1,14 @@
 """Machine code outlives its process, and not the sources it came from."""
 
+import errno
+import fcntl
 import json
+import multiprocessing
 import os
 import shutil
 import subprocess
 import sys
+import threading
 import time
 from importlib import import_module
 from pathlib import Path
@@ -13,8 +17,10 @@ import pytest
 from numba.core.caching import IndexDataCacheFile
 
 from flexsurr import kernel_cache
+from flexsurr.simulation import machine_code
 
 HERE = Path(__file__).parent
+REPOSITORY = HERE.parents[1]
 PREFIX = "flexsurr-kernels-"
 
 EVERY_METHOD = """
@@ -44,7 +50,7 @@ def run(code, *path, **environment):
     done = subprocess.run(
         [sys.executable, "-c", code],
         cwd=path[0] if path else HERE,  # Python looks there first
-        env={**kept, "PYTHONPATH": os.pathsep.join(map(str, path)), **environment},
+        env={**kept, "PYTHONPATH": os.pathsep.join(map(str, (*path, REPOSITORY))), **environment},
         capture_output=True,
         text=True,
         check=False,
@@ -92,6 +98,99 @@ def test_the_code_is_there_before_the_index_leads_to_it(tmp_path, monkeypatch):
         file.save("a", "code of a")
     assert len(list(tmp_path.glob("*.nbc"))) == 1
     assert code_file(tmp_path).load("a") is None
+
+
+ONE_METHOD = """
+import numpy as np
+from flexsurr import kernel_cache
+kernel_cache.activate(KERNELS)
+from closed_form_problems import OSCILLATOR, planar
+from flexsurr.config.study import Integrator
+from flexsurr.simulation import fixed_step, simulate
+method = Integrator(method=METHOD, step_s=0.01)
+assert simulate(planar(OSCILLATOR, 1.0), np.array([0.0, 1.0]), np.ones(2), method).completed
+print(sum(fixed_step.run_fixed_step.stats.cache_misses.values()))
+"""
+
+
+def one_method(name):
+    return ONE_METHOD.replace("KERNELS", repr(str(HERE / "closed_form_problems.py"))).replace(
+        "METHOD", repr(name)
+    )
+
+
+def test_of_two_processes_that_need_the_same_code_one_compiles_it(tmp_path):
+    code = one_method("rk4")
+    path = os.pathsep.join(map(str, (HERE, REPOSITORY)))
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path), "PYTHONPATH": path}
+    both = [
+        subprocess.Popen([sys.executable, "-c", code], cwd=HERE, env=environment, stdout=subprocess.PIPE)
+        for _ in range(2)
+    ]
+    assert sorted(int(process.communicate(timeout=120)[0]) for process in both) == [0, 1]
+
+
+def test_equations_are_compiled_once_for_all_integrators(tmp_path):
+    for name in ("rk4", "gauss_legendre_4"):
+        assert run(one_method(name), HERE, NUMBA_CACHE_DIR=str(tmp_path)).strip() == "1"
+    assert len(list(tmp_path.rglob("closed_form_problems._planar-*.nbc"))) == 1
+
+
+A_SCRIPT = """
+from typing import NamedTuple
+import numpy as np
+from flexsurr.simulation.rhs import evaluate, implements_rhs
+class Mine(NamedTuple):
+    rate: float
+@implements_rhs(Mine)
+def _mine(kernel, t, x, dx, work):
+    dx[0] = kernel.rate
+dx = np.empty(1)
+evaluate(Mine(2.0), 0.0, dx, dx, dx)
+print(dx[0])
+"""
+
+
+def test_the_kernel_of_a_script_is_compiled_in_each_process(tmp_path):
+    said = [run(A_SCRIPT, NUMBA_CACHE_DIR=str(tmp_path)) for _ in range(2)]
+    assert said == ["2.0\n", "2.0\n"]
+
+
+def _compiling(folder, name, said):
+    with machine_code._locked(folder, name):
+        said.send("begun")
+        time.sleep(60)
+
+
+@pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")  # of Python 3.12: nothing here holds a lock
+def test_what_another_process_compiles_is_waited_for_or_left_to_it(tmp_path):
+    listens, says = multiprocessing.Pipe()
+    compiling = multiprocessing.get_context("fork").Process(
+        target=_compiling, args=(str(tmp_path), "a", says)
+    )
+    compiling.start()
+    assert listens.recv() == "begun"
+    with machine_code._locked(str(tmp_path), "b"):
+        pass  # something else
+    with (
+        machine_code.unless_compiled_elsewhere(),
+        pytest.raises(machine_code.CompiledElsewhere),
+        machine_code._locked(str(tmp_path), "a"),
+    ):
+        pass
+    threading.Timer(0.2, compiling.kill).start()
+    with machine_code._locked(str(tmp_path), "a"):  # a killed process compiles no longer
+        assert compiling.exitcode is None or compiling.exitcode < 0
+    compiling.join()
+
+
+def test_without_locks_each_compiles_for_itself(tmp_path, monkeypatch):
+    def refuse(*arguments):
+        raise OSError(errno.ENOLCK, "no locks available")
+
+    monkeypatch.setattr(fcntl, "lockf", refuse)
+    with machine_code._locked(str(tmp_path), "a"):
+        pass
 
 
 def test_the_next_process_compiles_nothing():
