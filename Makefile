@@ -76,10 +76,9 @@ smoke: $(INSTALLED)
 		--config results=results-smoke -- \
 		results-smoke/tables/cost.csv results-smoke/figures/cantilever/figure_11.svg
 
-# The quick tests first; those that run the workflow and look at its pages last.
+# A file of tests stays on one core; those that take long come first (tests/conftest.py).
 test: check browser postgresql slurm compiler
-	OMP_NUM_THREADS=1 python -m pytest -n logical --dist loadfile --ignore=tests/workflow tests
-	python -m pytest -n logical --dist loadfile tests/workflow
+	OMP_NUM_THREADS=1 python -m pytest -n logical --dist loadfile --no-loadscope-reorder tests
 
 # numba's machine code is not seen: the equations of kernels count as missed, and other tests hold them.
 coverage: $(INSTALLED)

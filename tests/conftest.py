@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import pytest
 from hypothesis import settings
 
 from flexsurr import kernel_cache
@@ -14,3 +15,25 @@ kernel_cache.activate(Path(__file__).parent / "simulation" / "closed_form_proble
 settings.register_profile("flexsurr", deadline=None, derandomize=True)
 settings.register_profile("search", deadline=None, print_blob=True, max_examples=1000)
 settings.load_profile("flexsurr")
+
+LONG = (
+    "workflow/test_slurm.py",
+    "workflow/test_whole.py",
+    "workflow/test_interruptions.py",
+    "workflow/test_many.py",
+    "workflow/test_own_data.py",
+    "docs/test_tutorial.py",
+    "workflow",
+    "tracking/test_servers.py",
+)
+"""What takes a minute or more, the longest first."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """The long ones first: what is left at the end is short, and no core waits for another."""
+    tests = Path(__file__).parent
+
+    def place(item: pytest.Item) -> int:
+        return next((n for n, long in enumerate(LONG) if item.path.is_relative_to(tests / long)), len(LONG))
+
+    items.sort(key=place)

@@ -4,13 +4,15 @@ import multiprocessing
 import os
 import resource
 import signal
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
-from small_results import OTHER, Results
+from small_results import OTHER, REPOSITORY, Results
 
 from flexsurr.storage import write_json
 from flexsurr.storage.frames import write_frame
@@ -54,6 +56,35 @@ def test_a_full_disk_leaves_what_was_there(whole, tmp_path, kind, before):
     assert [each.name for each in tmp_path.iterdir() if each.name != name] == []
     write(whole, path)
     assert path.stat().st_size > FITS
+
+
+SMALL_DISK = """
+mount -t tmpfs -o size=4k none "$1" && cd "$1" && shift
+"$@"
+echo "$? and $(ls -A)"
+"""
+NAMESPACE = ("unshare", "--map-root-user", "--mount")
+
+
+@pytest.mark.skipif(
+    subprocess.run([*NAMESPACE, "true"], capture_output=True).returncode != 0,
+    reason="nobody may mount anything here",
+)
+def test_a_disk_that_is_too_small_is_one_line_and_keeps_nothing_half_written(whole, tmp_path):
+    """A real one, of one page of memory, which the namespace takes along when it ends."""
+    job, *_ = (whole.root / "jobs").glob("simulate-*.json")
+    simulate = [sys.executable, "-m", "flexsurr", "simulate", "--job", str(job), "--output", "shard.parquet"]
+    done = subprocess.run(
+        [*NAMESPACE, "sh", "-c", SMALL_DISK, "sh", str(tmp_path), *simulate],
+        env=os.environ | {"PYTHONPATH": str(REPOSITORY)},
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert done.stdout == "1 and \n"
+    (said,) = [line for line in done.stderr.splitlines() if line.startswith("flexsurr simulate: ")]
+    assert "No space left on device" in said
+    assert "Traceback" not in done.stderr
 
 
 def _killed(write: Callable[[Results, Path], None], results: Results, path: Path) -> None:

@@ -16,6 +16,7 @@ from flexsurr.config.settings import load
 from flexsurr.workflow.plan import Plan
 
 CONFIGURATION = ("config/config.yaml", "config/presets/quick.yaml")
+SAID = "snakemake.out"
 
 
 @dataclass
@@ -38,9 +39,9 @@ class Project:
     def command(self) -> list[str]:
         return [sys.executable, "-m", "snakemake", "--configfile", CONFIGURATION[1], "--cores", "2"]
 
-    def start(self, *options: str) -> subprocess.Popen:
-        """Snakemake in a session of its own, as a terminal would run it; its output goes to a file."""
-        with (self.root / "snakemake.out").open("w") as output:
+    def start(self, *options: str, said: str = SAID) -> subprocess.Popen:
+        """Snakemake in a session of its own, as a terminal would run it; its output goes to `said`."""
+        with (self.root / said).open("w") as output:
             process = subprocess.Popen(
                 [*self.command, *options],
                 cwd=self.root,
@@ -53,10 +54,10 @@ class Project:
         self.started.append(process)
         return process
 
-    def run(self, *options: str) -> tuple[int, str]:
+    def run(self, *options: str, said: str = SAID) -> tuple[int, str]:
         """Run Snakemake to its end: exit code and everything it printed."""
-        code = self.start(*options).wait(timeout=1800)
-        return code, (self.root / "snakemake.out").read_text()
+        code = self.start(*options, said=said).wait(timeout=1800)
+        return code, (self.root / said).read_text()
 
     def run_well(self, *options: str) -> str:
         """Run Snakemake, which must succeed."""

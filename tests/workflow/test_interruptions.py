@@ -124,9 +124,13 @@ def test_a_killed_snakemake(disturbed, undisturbed):
     finishes_as_if_undisturbed(disturbed, undisturbed)
 
 
-def test_ctrl_c(disturbed, undisturbed):
+def test_a_second_snakemake_in_the_folder_is_refused_and_ctrl_c_ends_the_first(disturbed, undisturbed):
     snakemake = disturbed.start(*TARGETS)
     wait_until_it_learns(disturbed)
+    code, output = disturbed.run(*TARGETS, said="second.out")
+    assert code != 0
+    assert "cannot be locked" in output
+    assert snakemake.poll() is None
     os.killpg(snakemake.pid, signal.SIGINT)
     assert snakemake.wait(120) != 0
     eventually(lambda: training_processes(disturbed) == [])

@@ -2,6 +2,7 @@
 
 import shutil
 import subprocess
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -12,8 +13,16 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 RECORDER = '#!/bin/sh\nprintf "%s\\n" "$@" >> "$(dirname "$0")/arguments"\n'
 
 
-def test_a_study_with_a_hyphen_in_folders_with_spaces(make_project):
-    """And with results behind a link."""
+@pytest.fixture
+def elsewhere():
+    """A folder on another file system than the project's, where this machine has one that anybody may use."""
+    shared = Path("/dev/shm")
+    with tempfile.TemporaryDirectory(dir=shared if shared.is_dir() else None) as folder:
+        yield Path(folder)
+
+
+def test_a_study_with_a_hyphen_in_folders_with_spaces(make_project, elsewhere):
+    """And with results behind a link, on another mount."""
     project = make_project()
     project.root = project.root.rename(project.root.with_name("a project"))
     shutil.copy(
@@ -21,10 +30,9 @@ def test_a_study_with_a_hyphen_in_folders_with_spaces(make_project):
     )
     project.change("config/config.yaml", "studies", ["soft-beam"])
     project.change("config/config.yaml", "results", "my results")
-    (project.root / "elsewhere").mkdir()
-    (project.root / "my results").symlink_to("elsewhere")
+    (project.root / "my results").symlink_to(elsewhere)
     project.run_well("my results/evaluation/soft-beam/statics.parquet")
-    assert (project.root / "elsewhere/evaluation/soft-beam/statics.parquet").is_file()
+    assert (elsewhere / "evaluation/soft-beam/statics.parquet").is_file()
 
 
 def test_a_study_is_a_target_and_no_other_study_is_made_for_it(make_project):
@@ -48,7 +56,11 @@ def test_a_study_cannot_be_called_like_a_rule(make_project):
 
 @pytest.mark.parametrize(
     ("target", "tool", "argument"),
-    [("ui", "mlflow", "sqlite:///{root}/results/mlflow/mlflow.db"), ("reproduce", "snakemake", "--cores")],
+    [
+        ("ui", "mlflow", "sqlite:///{root}/results/mlflow/mlflow.db"),
+        ("ui", "mlflow", "127.0.0.1"),  # on loopback, and nowhere else
+        ("reproduce", "snakemake", "--cores"),
+    ],
 )
 def test_make_in_a_folder_with_spaces(tmp_path, target, tool, argument):
     """What make runs is recorded in place of the tool itself, an argument a line."""

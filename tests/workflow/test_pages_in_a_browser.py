@@ -97,6 +97,11 @@ def open_report(quick, browser, kind: str, study: str = "cantilever") -> None:
     """The list of a study's figures or tables in the report."""
     browser.get((quick.results / "report.html").as_uri())
     wait_for(browser, "Results")
+    open_list(browser, kind, study)
+
+
+def open_list(browser, kind: str, study: str = "cantilever") -> None:
+    """The same, where the report is open already: it has twenty megabytes."""
     click(browser, "Results")
     wait_for(browser, "airliner", "cantilever", "wing")
     click(browser, study)
@@ -116,21 +121,22 @@ def test_the_report_lists_every_figure_and_table_of_the_study(quick, browser):
     assert complaints(browser) == []
 
 
-@pytest.mark.parametrize("name", OF_THE_CANTILEVER)
-def test_the_report_shows_a_figure_and_what_to_see_in_it(quick, browser, name):
+def test_the_report_shows_each_figure_and_what_to_see_in_it(quick, browser):
     open_report(quick, browser, "figures")
-    wait_for(browser, name)
-    look, explain = browser.find_elements(By.XPATH, f"//tr[contains(., '{name}')]//a")
-    look.click()
-    WebDriverWait(browser, PATIENCE_S).until(
-        lambda driver: driver.execute_script(
-            "return [...document.images].some(i => i.complete && i.naturalWidth > 100 && i.width > 100)"
-        ),
-        "no picture",
-    )
-    explain.click()
-    caption = " ".join((quick.root / "workflow" / "report" / f"{name}.rst").read_text().split())
-    wait_for(browser, caption.replace("*", "").replace("`", "")[:60])
+    for name in OF_THE_CANTILEVER:
+        wait_for(browser, name)
+        look, explain = browser.find_elements(By.XPATH, f"//tr[contains(., '{name}')]//a")
+        look.click()
+        WebDriverWait(browser, PATIENCE_S).until(
+            lambda driver: driver.execute_script(
+                "return [...document.images].some(i => i.complete && i.naturalWidth > 100 && i.width > 100)"
+            ),
+            f"{name}: no picture",
+        )
+        explain.click()
+        caption = " ".join((quick.root / "workflow" / "report" / f"{name}.rst").read_text().split())
+        wait_for(browser, caption.replace("*", "").replace("`", "")[:60])
+        open_list(browser, "figures")
     assert complaints(browser) == []
 
 
@@ -327,4 +333,20 @@ def test_the_page_of_a_trial_shows_parameters_and_figures(quick, served, browser
     key, page = next(iter(served.pages.items()))
     browser.get(f"{served.address}/#/experiments/{served.experiment}/runs/{page}")
     wait_for(browser, key, "validation_nmse", "architecture", "dataset_sha256", "sweeps of cantilever")
+    assert serious(browser) == []
+
+
+def test_the_page_of_a_trial_draws_its_losses(served, browser):
+    page = next(page for key, page in served.pages.items() if key.startswith("hnn-"))
+    browser.get(f"{served.address}/#/experiments/{served.experiment}/runs/{page}/model-metrics")
+    wait_for(browser, "train_loss", "validation_loss")
+    WebDriverWait(browser, PATIENCE_S).until(
+        lambda driver: driver.find_elements(By.CSS_SELECTOR, ".js-plotly-plot path.js-line"), "no curve"
+    )
+    assert serious(browser) == []
+
+
+def test_the_page_of_the_champion_shows_its_alias_and_its_card(served, browser):
+    browser.get(f"{served.address}/#/models/cantilever-hamiltonian")
+    wait_for(browser, "cantilever-hamiltonian", "champion", "Version 1")
     assert serious(browser) == []
