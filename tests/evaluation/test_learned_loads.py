@@ -67,7 +67,8 @@ def test_the_exact_forces_are_those_of_the_loaded_model(twisted):
     model = loaded(reduced_order(twisted, "hamiltonian", "numpy"), twisted, load, "numpy")
     eta = coordinates(4)
     parts = load_parts(TWISTED, load)
-    expected = [model.generalised_force(at, acting(TWISTED.elements, parts, [1.0])) for at in eta]
+    now = acting(TWISTED.elements, parts, [1.0])
+    expected = [model.generalised_force(at, np.zeros_like(at), now) for at in eta]
     np.testing.assert_allclose(exact_forces(twisted, parts, eta), expected, rtol=1e-12)
 
 

@@ -17,8 +17,9 @@ def without_types(node: ast.AST, is_compiled: bool = False) -> list[str]:
         if isinstance(child, ast.FunctionDef):
             arguments = [*child.args.posonlyargs, *child.args.args, *child.args.kwonlyargs]
             decorators = {ast.unparse(each).partition("(")[0] for each in child.decorator_list}
-            # an overload chooses among functions of a kernel, which it alone sees
-            inside |= bool(COMPILED & decorators) or (bool(arguments) and arguments[0].arg == "kernel")
+            # an overload chooses among functions of a kernel, or of a method, which it alone sees
+            chosen = bool(arguments) and arguments[0].arg in ("kernel", "method")
+            inside |= bool(COMPILED & decorators) or chosen
             typed = child.returns is not None or any(each.annotation for each in arguments)
             found += [] if inside or typed else [child.name]
         found += without_types(child, inside)

@@ -43,6 +43,7 @@ QUIET = (
     "--window-size=1400,1000",
 )
 PATIENCE_S = 120
+SCROLL_DOWN = "for (const e of document.querySelectorAll('*')) e.scrollTop += 300"
 CANTILEVER = Structure(**read_yaml(Path(__file__).parents[2] / "config/structures/cantilever.yaml"))
 OF_THE_CANTILEVER = [
     name for name, figure in FIGURES.items() if "trajectories" in figure.sources and figure.shows(CANTILEVER)
@@ -339,10 +340,14 @@ def test_the_page_of_a_trial_shows_parameters_and_figures(quick, served, browser
 def test_the_page_of_a_trial_draws_its_losses(served, browser):
     page = next(page for key, page in served.pages.items() if key.startswith("hnn-"))
     browser.get(f"{served.address}/#/experiments/{served.experiment}/runs/{page}/model-metrics")
-    wait_for(browser, "train_loss", "validation_loss")
-    WebDriverWait(browser, PATIENCE_S).until(
-        lambda driver: driver.find_elements(By.CSS_SELECTOR, ".js-plotly-plot path.js-line"), "no curve"
-    )
+
+    def losses_are_drawn(driver) -> bool:
+        """At the bottom of the page, which draws what is scrolled to."""
+        driver.execute_script(SCROLL_DOWN)
+        text, lines = text_of(driver), driver.find_elements(By.CSS_SELECTOR, ".js-plotly-plot path.js-line")
+        return "train_loss" in text and "validation_loss" in text and len(lines) >= 2
+
+    WebDriverWait(browser, PATIENCE_S).until(losses_are_drawn, "no curve of the losses")
     assert serious(browser) == []
 
 
