@@ -84,7 +84,8 @@ class PolynomialHamiltonian(Surrogate):
                 table[0, k] += 2.0 * c
             if k > 0:
                 table[1 if j == 2 else 2, k - 1] += k * c
-        return OscillatorPolynomial(float(step), *(row.copy() for row in table))
+        used = np.flatnonzero(table.any(axis=0)).max(initial=0) + 1
+        return OscillatorPolynomial(float(step), *(row[:used].copy() for row in table))
 
     def settings(self) -> dict[str, Any]:
         """Nothing: the exponents are saved as an array."""
@@ -111,12 +112,15 @@ def _oscillator_polynomial(kernel, t, x, dx, work):
     s = q if step == 1.0 else q * q
     ds_dq = 1.0 if step == 1.0 else 2.0 * q
     # two terms at a time: a sum waits for half as many multiplications
-    odd = w.size % 2
-    inverse_mass = w[w.size - 1] if odd else 0.0
-    kinetic = half_dw_ds[w.size - 1] if odd else 0.0
-    potential = dv_ds[w.size - 1] if odd else 0.0
+    n = w.size
+    odd = n % 2
+    inverse_mass, kinetic, potential = w[n - 1], half_dw_ds[n - 1], dv_ds[n - 1]
+    if not odd:
+        inverse_mass = inverse_mass * s + w[n - 2]
+        kinetic = kinetic * s + half_dw_ds[n - 2]
+        potential = potential * s + dv_ds[n - 2]
     square = s * s
-    for k in range(w.size - odd - 1, 0, -2):
+    for k in range(n - 3 + odd, 0, -2):
         inverse_mass = inverse_mass * square + (w[k] * s + w[k - 1])
         kinetic = kinetic * square + (half_dw_ds[k] * s + half_dw_ds[k - 1])
         potential = potential * square + (dv_ds[k] * s + dv_ds[k - 1])
@@ -128,17 +132,23 @@ def _oscillator_polynomial(kernel, t, x, dx, work):
 def _block_of_oscillators(kernel, t, x, dx, work):
     step, w, half_dw_ds, dv_ds = kernel
     # the inverse mass and the potential in the places of their rates, s and the kinetic part in the scratch
-    odd = w.size % 2
-    of_w = w[w.size - 1] if odd else 0.0
-    of_kinetic = half_dw_ds[w.size - 1] if odd else 0.0
-    of_potential = dv_ds[w.size - 1] if odd else 0.0
+    n = w.size
+    odd = n % 2
+    of_w, of_kinetic, of_potential = w[n - 1], half_dw_ds[n - 1], dv_ds[n - 1]
     for b in range(LANES):
         work[b] = x[b] if step == 1.0 else x[b] * x[b]
         work[LANES + b] = of_kinetic
         dx[b] = of_w
         dx[LANES + b] = of_potential
+    if not odd:
+        of_w, of_kinetic, of_potential = w[n - 2], half_dw_ds[n - 2], dv_ds[n - 2]
+        for b in range(LANES):
+            s = work[b]
+            dx[b] = dx[b] * s + of_w
+            work[LANES + b] = work[LANES + b] * s + of_kinetic
+            dx[LANES + b] = dx[LANES + b] * s + of_potential
     # two terms at a time: half the loads and stores
-    for k in range(w.size - odd - 1, 0, -2):
+    for k in range(n - 3 + odd, 0, -2):
         upper_w, lower_w = w[k], w[k - 1]
         upper_kinetic, lower_kinetic = half_dw_ds[k], half_dw_ds[k - 1]
         upper_potential, lower_potential = dv_ds[k], dv_ds[k - 1]
