@@ -111,8 +111,30 @@ def solve_packed(work, matrix, b, r):
             work[row + j] = scaled
         work[row + i] = 1.0 / pivot if pivot > 0.0 else np.nan
         work[b + i] = total
+    _solve_upper(work, matrix, b, r)
+
+
+@njit(fastmath=FLOATING_POINT, error_model="numpy", _nrt=False)
+def _solve_upper(work, matrix, b, r):
+    """Overwrite b by the solution of D Lᵀ x = b, for what `solve_packed` leaves at `matrix`."""
     for i in range(r - 1, -1, -1):
         total = work[b + i] * work[matrix + i * (i + 1) // 2 + i]
         for j in range(i + 1, r):
             total -= work[matrix + j * (j + 1) // 2 + i] * work[b + j]
         work[b + i] = total
+
+
+@njit(fastmath=FLOATING_POINT, error_model="numpy", _nrt=False)
+def invert_packed(work, matrix, inverse, r):
+    """Write the inverse (r, r) of the packed matrix at its offset, and overwrite that by L D Lᵀ."""
+    for i in range(r):
+        work[inverse + i] = 1.0 if i == 0 else 0.0
+    solve_packed(work, matrix, inverse, r)
+    for k in range(1, r):
+        column = inverse + k * r
+        for i in range(r):
+            total = 1.0 if i == k else 0.0
+            for j in range(i):
+                total -= work[matrix + i * (i + 1) // 2 + j] * work[column + j]
+            work[column + i] = total
+        _solve_upper(work, matrix, column, r)

@@ -11,10 +11,11 @@ import numpy as np
 from numba import njit
 
 from flexsurr.simulation.dimension import LANES
+from flexsurr.simulation.jacobian import implements_jacobian
 from flexsurr.simulation.rhs import FLOATING_POINT, Array, implements_rhs
 from flexsurr.simulation.side_by_side import implements_rhs_of_block
-from flexsurr.surrogates.activations import slope, two_slopes, value
-from flexsurr.surrogates.layers import Dense, Network, Shapes, back, forward, offset
+from flexsurr.surrogates.activations import curvature, slope, two_slopes, value
+from flexsurr.surrogates.layers import Dense, Network, Shapes, add_products, back, forward, offset
 from flexsurr.surrogates.scaling import FeatureScaling, scaled_kernel, scaled_states
 from flexsurr.surrogates.surrogate import symplectic
 
@@ -90,6 +91,85 @@ def gradient_of_scalar(activation, widths, parameters, weights, x, work):
         back(parameters, weights, n, m, work, z, values)
 
 
+# What follows keeps five rows of numbers for each hidden layer, after the d inputs: σ″, values and later
+# their tangents, σ′, derivatives of the scalar by the values, tangents of the arguments.
+_ROWS = 5
+
+
+@njit(fastmath=FLOATING_POINT, error_model="numpy")
+def prepare_second_derivatives(activation, widths, parameters, weights, x, work):
+    """Sweep forth and back once at `x`, for `gradient_along`."""
+    last = len(widths) - 1
+    for j in range(x.size):
+        work[j] = x[j]
+    inputs = offset(0)
+    row = offset(widths[0])
+    for layer in range(1, last + 1):
+        n = offset(widths[layer - 1])
+        m = offset(widths[layer])
+        forward(parameters, weights, n, m, work, inputs, row)
+        weights += n * m + m
+        inputs = row + m
+        if layer < last:
+            for k in range(m):
+                work[inputs + k] = value(activation, work[row + k])
+        for k in range(m):
+            work[inputs + m + k] = slope(activation, work[row + k])
+        for k in range(m):
+            work[row + k] = curvature(activation, work[row + k])
+        row += offset(_ROWS) * m
+    m = offset(widths[last])
+    row -= offset(_ROWS) * m
+    for k in range(m):
+        work[row + offset(3) * m + k] = parameters[weights + k]
+    for layer in range(last, 1, -1):
+        n = offset(widths[layer - 1])
+        m = offset(widths[layer])
+        weights -= n * m + m
+        tangents = row + offset(4) * m
+        for k in range(m):
+            work[tangents + k] = work[tangents - m + k] * work[row + offset(2) * m + k]
+        row -= offset(_ROWS) * n
+        back(parameters, weights, n, m, work, tangents, row + offset(3) * n)
+
+
+@njit(fastmath=FLOATING_POINT, error_model="numpy")
+def gradient_along(widths, parameters, weights, direction, work):
+    """∂/∂x_direction of the gradient of the scalar, (d,), left at `work`'s start."""
+    last = len(widths) - 1
+    row = offset(widths[0])
+    n = row
+    m = offset(widths[1])
+    for k in range(m):
+        work[row + offset(4) * m + k] = parameters[weights + direction * m + k]
+    for layer in range(2, last + 1):
+        weights += n * m + m
+        n = m
+        m = offset(widths[layer])
+        by_values = row + n
+        for k in range(n):
+            work[by_values + k] = work[row + offset(2) * n + k] * work[row + offset(4) * n + k]
+        row += offset(_ROWS) * n
+        for k in range(m):
+            work[row + offset(4) * m + k] = 0.0
+        add_products(parameters, weights, n, m, work, by_values, row + offset(4) * m)
+    for layer in range(last, 0, -1):
+        n = offset(widths[layer - 1])
+        m = offset(widths[layer])
+        tangents = row + offset(4) * m
+        for k in range(m):
+            work[tangents + k] *= work[row + offset(3) * m + k] * work[row + k]
+        if layer < last:
+            for k in range(m):
+                work[tangents + k] += work[row + m + k] * work[row + offset(2) * m + k]
+        if layer > 1:
+            row -= offset(_ROWS) * n
+            back(parameters, weights, n, m, work, tangents, row + n)
+            weights -= offset(widths[layer - 2]) * n + n
+        else:
+            back(parameters, weights, n, m, work, tangents, offset(0))
+
+
 @dataclass(frozen=True, eq=False)
 class HNN(ScalarNetworks):
     """q̇ = ∂H/∂p, ṗ = −∂H/∂q with H = Σ c σ(… σ(W₁ x + b₁) …): eq. 2 without load or dissipation.
@@ -109,7 +189,7 @@ class HNN(ScalarNetworks):
 
     def kernel(self) -> tuple[NamedTuple, int]:
         """A single loop for one hidden layer over one pair (q, p), else layer by layer."""
-        work_size = self.widths[0] + 2 * sum(self.hidden)
+        work_size = self.widths[0] + _ROWS * sum(self.hidden)
         if isinstance(self.scaling, FeatureScaling):
             unscaled = self.scaled_kernel(self.parameters.copy())
             return scaled_kernel(unscaled, work_size, self.scaling, self.widths[0])
@@ -201,6 +281,19 @@ def _hnn(kernel, t, x, dx, work):
         dx[r + j] = -work[j]
 
 
+@implements_jacobian(HNNKernel)
+def _jacobian_of_hnn(kernel, t, x, dx, jac, work):
+    activation, widths, parameters, _ = kernel
+    prepare_second_derivatives(activation, widths, parameters, offset(0), x, work)
+    r = x.size // 2
+    for j in range(x.size):
+        gradient_along(widths, parameters, offset(0), offset(j), work)
+        for i in range(r):
+            jac[i, j] = work[r + i]
+            jac[r + i, j] = -work[i]
+    return 0
+
+
 @dataclass(frozen=True, eq=False)
 class DissipativeHNN(ScalarNetworks):
     """q̇ = ∂H/∂p + ∂D/∂q, ṗ = −∂H/∂q + ∂D/∂p (in eq. 12), with H and D two separate networks (Fig. 7).
@@ -222,7 +315,7 @@ class DissipativeHNN(ScalarNetworks):
 
     def kernel(self) -> tuple[NamedTuple, int]:
         """Layer by layer, one network after the other; the scales are applied to inputs and outputs."""
-        size = self.widths[0] + 2 * sum(self.hidden)
+        size = self.widths[0] + _ROWS * sum(self.hidden)
         return scaled_kernel(self.scaled_kernel(self.parameters.copy()), size, self.scaling, self.widths[0])
 
 
@@ -246,3 +339,22 @@ def _dissipative_hnn(kernel, t, x, dx, work):
     gradient_of_scalar(activation, widths, parameters, offset(parameters.size // networks), x, work)
     for j in range(x.size):
         dx[j] += work[j]
+
+
+@implements_jacobian(DissipativeHNNKernel)
+def _jacobian_of_dissipative_hnn(kernel, t, x, dx, jac, work):
+    activation, widths, parameters, networks = kernel
+    r = x.size // 2
+    prepare_second_derivatives(activation, widths, parameters, offset(0), x, work)
+    for j in range(x.size):
+        gradient_along(widths, parameters, offset(0), offset(j), work)
+        for i in range(r):
+            jac[i, j] = work[r + i]
+            jac[r + i, j] = -work[i]
+    second = offset(parameters.size // networks)
+    prepare_second_derivatives(activation, widths, parameters, second, x, work)
+    for j in range(x.size):
+        gradient_along(widths, parameters, second, offset(j), work)
+        for i in range(x.size):
+            jac[i, j] += work[i]
+    return 0

@@ -81,6 +81,12 @@ def forward(parameters, layer, n, m, work, inputs, z):
     biases = layer + n * m
     for k in range(m):
         work[z + k] = parameters[biases + k]
+    add_products(parameters, layer, n, m, work, inputs, z)
+
+
+@njit(fastmath=FLOATING_POINT, error_model="numpy")
+def add_products(parameters, layer, n, m, work, inputs, z):
+    """Add Σ_j a_j W_jk to z_k: all that a layer does to tangents."""
     for j in range(n):
         a = work[inputs + j]
         row = layer + j * m

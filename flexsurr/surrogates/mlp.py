@@ -6,10 +6,11 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 
 from flexsurr.simulation.dimension import LANES
+from flexsurr.simulation.jacobian import implements_jacobian
 from flexsurr.simulation.rhs import Array, implements_rhs
 from flexsurr.simulation.side_by_side import implements_rhs_of_block
-from flexsurr.surrogates.activations import value
-from flexsurr.surrogates.layers import Dense, Network, Shapes, forward, layer_shapes, offset
+from flexsurr.surrogates.activations import slope, value
+from flexsurr.surrogates.layers import Dense, Network, Shapes, add_products, forward, layer_shapes, offset
 from flexsurr.surrogates.scaling import origins
 
 
@@ -47,7 +48,7 @@ class MLP(Network):
             vectors = inner[0], inner[1], others[0], weights_out[:, 0], weights_out[:, 1], biases_out
             return PhasePlaneMLP(self.sigma.tag, *(vector.copy() for vector in vectors)), 0
         parameters = np.concatenate([array.ravel() for array in (inner, *others, weights_out, biases_out)])
-        return self.scaled_kernel(parameters), sum(self.widths) + count
+        return self.scaled_kernel(parameters), 2 * sum(self.widths)
 
 
 class PhasePlaneMLP(NamedTuple):
@@ -120,3 +121,50 @@ def _mlp(kernel, t, x, dx, work):
     forward(parameters, weights, n, offset(x.size), work, values, values + n)
     for i in range(x.size):
         dx[i] = work[values + n + offset(i)]
+
+
+@implements_jacobian(MLPKernel)
+def _jacobian_of_mlp(kernel, t, x, dx, jac, work):
+    activation, widths, parameters, _ = kernel
+    d = offset(x.size)
+    # work: the inputs, of each layer σ′ and values, later tangents, then the outputs' tangents
+    for j in range(x.size):
+        work[j] = x[j]
+    inputs = offset(0)
+    row = d
+    weights = offset(0)
+    for layer in range(1, len(widths)):
+        n = offset(widths[layer - 1])
+        m = offset(widths[layer])
+        forward(parameters, weights, n, m, work, inputs, row)
+        weights += n * m + m
+        inputs = row + m
+        for k in range(m):
+            work[inputs + k] = value(activation, work[row + k])
+        for k in range(m):
+            work[row + k] = slope(activation, work[row + k])
+        row = inputs + m
+    for j in range(x.size):
+        inputs = offset(0)
+        row = d
+        weights = offset(0)
+        for i in range(x.size):
+            work[i] = 1.0 if i == j else 0.0
+        for layer in range(1, len(widths)):
+            n = offset(widths[layer - 1])
+            m = offset(widths[layer])
+            tangents = row + m
+            for k in range(m):
+                work[tangents + k] = 0.0
+            add_products(parameters, weights, n, m, work, inputs, tangents)
+            for k in range(m):
+                work[tangents + k] *= work[row + k]
+            weights += n * m + m
+            inputs = tangents
+            row = tangents + m
+        for i in range(x.size):
+            work[row + offset(i)] = 0.0
+        add_products(parameters, weights, offset(widths[len(widths) - 1]), d, work, inputs, row)
+        for i in range(x.size):
+            jac[i, j] = work[row + offset(i)]
+    return 0

@@ -156,6 +156,60 @@ def pull_back(pieces, d, phi, adjoint, slopes, work):
             place += offset(1)
 
 
+@njit(fastmath=FLOATING_POINT, error_model="numpy", _nrt=False)
+def pull_back_along(pieces, d, phi, adjoint, slopes, variable, tangents, work):
+    """∂/∂x_variable of what `pull_back` has left at `slopes`, left at the start of `tangents`.
+
+    `pull_back` must have run. Scratch from `tangents` on: slopes and factors (d and the products of two
+    variables, each), monomials, adjoints.
+    """
+    size = d + d * (d + offset(1)) // offset(2)
+    by_factor = tangents + size
+    by_phi = by_factor + size
+    count = adjoint - phi
+    by_adjoint = by_phi + count
+    for k in range(d):
+        work[by_factor + k] = 1.0 if k == variable else 0.0
+    place = by_factor + d
+    for i in range(d):
+        for j in range(i + offset(1)):
+            work[place] = work[by_factor + i] * work[j] + work[i] * work[by_factor + j]
+            place += offset(1)
+    work[by_phi] = 0.0
+    for n in range(len(pieces)):
+        factor = work[pieces[n, 0]]
+        its_tangent = work[by_factor + pieces[n, 0]]
+        parent = pieces[n, 1]
+        first = by_phi + pieces[n, 2]
+        for k in range(pieces[n, 3]):
+            work[first + k] = work[by_phi + parent + k] * factor + work[phi + parent + k] * its_tangent
+    for k in range(size):
+        work[tangents + k] = 0.0
+    for k in range(count):
+        work[by_adjoint + k] = 0.0
+    for back in range(len(pieces)):
+        n = len(pieces) - 1 - back
+        factor = work[pieces[n, 0]]
+        its_tangent = work[by_factor + pieces[n, 0]]
+        parent = pieces[n, 1]
+        first = pieces[n, 2]
+        total = 0.0
+        for k in range(pieces[n, 3]):
+            a = work[adjoint + first + k]
+            b = work[by_adjoint + first + k]
+            total += b * work[phi + parent + k] + a * work[by_phi + parent + k]
+            work[by_adjoint + parent + k] += b * factor + a * its_tangent
+        work[tangents + pieces[n, 0]] += total
+    place = d
+    for i in range(d):
+        for j in range(i + offset(1)):
+            a = work[slopes + place]
+            b = work[tangents + place]
+            work[tangents + i] += b * work[j] + a * work[by_factor + j]
+            work[tangents + j] += b * work[i] + a * work[by_factor + i]
+            place += offset(1)
+
+
 def _last_variable(row: tuple[int, ...]) -> int:
     return max((j for j, power in enumerate(row) if power), default=0)
 

@@ -17,6 +17,7 @@ import numpy as np
 from numba import njit
 
 from flexsurr.simulation.rhs import Array
+from flexsurr.surrogates.layers import offset
 from flexsurr.surrogates.packed import OPTIONS, packed_size
 from flexsurr.surrogates.potential import Potential
 from flexsurr.surrogates.scaling import FeatureScaling
@@ -130,6 +131,33 @@ class PortHamiltonian(Surrogate):
         count, r = len(self.state_names), self.pairs
         states = self.scaling.states(count)
         return count, states[:r], states[r:], self.scaling.rates(count)[:r]
+
+
+@njit(**OPTIONS)
+def jacobian_of_motion(stiffness, damping, work, inverse, turned, curvature, jac):
+    """∂ẋ/∂x into jac (2r, 2r), from matrices (r, r) row by row at their offsets in `work`.
+
+    `inverse` is M⁻¹, column k of `turned` (∂M/∂q_k) q̇, `curvature` ½ ∂²/∂q∂q (q̇ᵀ M q̇) with q̇ held. As
+    ∂q̇/∂q_k = −M⁻¹ (∂M/∂q_k) q̇ and ∂q̇/∂p = M⁻¹, the rest is the chain rule.
+    """
+    r = offset(jac.shape[0] // 2)
+    for i in range(r):
+        for k in range(r):
+            total = 0.0
+            for j in range(r):
+                total -= work[inverse + i * r + j] * work[turned + j * r + k]
+            jac[i, k] = total
+            jac[i, r + k] = work[inverse + i * r + k]
+    for k in range(r):
+        for m in range(r):
+            by_q = work[curvature + k * r + m] - stiffness[k * r + m]
+            by_p = 0.0
+            for j in range(r):
+                by_rate = work[turned + j * r + k] - damping[k * r + j]
+                by_q += by_rate * jac[j, m]
+                by_p += by_rate * jac[j, r + m]
+            jac[r + k, m] = by_q
+            jac[r + k, r + m] = by_p
 
 
 @njit(**OPTIONS)

@@ -5,12 +5,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flexsurr.simulation.linear_solvers import solve_packed
+from flexsurr.simulation.jacobian import implements_jacobian
+from flexsurr.simulation.linear_solvers import invert_packed, solve_packed
 from flexsurr.simulation.rhs import Array, implements_rhs
-from flexsurr.surrogates.activations import ActivationFunction, activation_function, slope, value
+from flexsurr.surrogates.activations import ActivationFunction, activation_function, curvature, slope, value
 from flexsurr.surrogates.layers import Dense, Shapes, forward, layer_shapes, offset, read, size_of, views
 from flexsurr.surrogates.packed import lower, pack, packed_size, symmetric
-from flexsurr.surrogates.port_hamiltonian import PortHamiltonian, springs_and_dampers
+from flexsurr.surrogates.port_hamiltonian import PortHamiltonian, jacobian_of_motion, springs_and_dampers
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,7 +130,9 @@ class NetworkPortHamiltonian(PortHamiltonian):
             self.even,
             self.factored,
         )
-        return kernel, 3 * self.hidden[0] + 3 * self.packed_size + 3 * self.pairs
+        r, n, entries = self.pairs, self.hidden[0], self.packed_size
+        # of the right-hand side 3 (n + entries + r); its Jacobian needs more
+        return kernel, (5 + r) * n + 4 * entries + r + 4 * r * r
 
     def settings(self) -> dict[str, Any]:
         """Hidden layer, activation, parity and what the network gives; the floor is saved as an array."""
@@ -244,3 +247,133 @@ def _network_port_hamiltonian(kernel, t, x, dx, work):
                     dx[r + i] = total
             e += offset(1)
     springs_and_dampers(stiffness, damping, x, dx)
+
+
+@implements_jacobian(NetworkPortHamiltonianKernel)
+def _jacobian_of_network(kernel, t, x, dx, jac, work):
+    activation, layer, readout, constant, floor, stiffness, damping, even, factored = kernel
+    r = offset(x.size // 2)
+    entries = offset(constant.size)
+    n = offset(readout.size // constant.size)
+    inputs = entries if even else r
+    # work: s, σ and its derivatives, adjoints of σ, ∂z/∂q_k; L or E, M; ∂L/∂q_k or
+    # ∂E/∂q_k, Lᵀ q̇, (∂L/∂q_k)ᵀ q̇; M⁻¹, (∂M/∂q_k) q̇, curvature
+    z = entries
+    values = z + n
+    slopes = values + n
+    bends = slopes + n
+    adjoint = bends + n
+    by_q = adjoint + n
+    factor = by_q + r * n
+    matrix = factor + entries
+    derivative = matrix + entries
+    turned_rates = derivative + entries
+    of_derivatives = turned_rates + r
+    inverse = of_derivatives + r * r
+    turned = inverse + r * r
+    curved = turned + r * r
+    e = offset(0)
+    for i in range(r):
+        if even:
+            for j in range(i + offset(1)):
+                work[e] = x[i] * x[j]
+                e += offset(1)
+        else:
+            work[i] = x[i]
+    forward(layer, offset(0), inputs, n, work, offset(0), z)
+    for k in range(n):
+        work[values + k] = value(activation, work[z + k])
+    for k in range(n):
+        work[slopes + k] = slope(activation, work[z + k])
+    for k in range(n):
+        work[bends + k] = curvature(activation, work[z + k])
+    for i in range(r * n):
+        work[by_q + i] = 0.0
+    e = offset(0)
+    for i in range(r):
+        for j in range(i + offset(1)):
+            if even or i == j:
+                row = (e if even else i) * n
+                for k in range(n):
+                    # of q_i q_j, by q_i and by q_j; of q_i alone
+                    work[by_q + i * n + k] += layer[row + k] * (x[j] if even else 1.0)
+                    if even:
+                        work[by_q + j * n + k] += layer[row + k] * x[i]
+            e += offset(1)
+    for e in range(entries):
+        work[factor + e] = constant[e] + read(readout, e * n, work, values, n)
+    e = offset(0)
+    for i in range(r):
+        work[turned_rates + i] = 0.0
+        row = factor + i * (i + offset(1)) // offset(2)
+        for j in range(i + offset(1)):
+            other = factor + j * (j + offset(1)) // offset(2)
+            total = floor[e]
+            if factored:
+                for k in range(j + offset(1)):
+                    total += work[row + k] * work[other + k]
+            else:
+                total += work[row + j]
+            work[matrix + e] = total
+            e += offset(1)
+    invert_packed(work, np.int64(matrix), np.int64(inverse), np.int64(r))
+    for k in range(n):
+        work[adjoint + k] = 0.0
+    e = offset(0)
+    for i in range(r):
+        for j in range(i + offset(1)):
+            work[turned_rates + j] += work[factor + e] * dx[i]
+            e += offset(1)
+    e = offset(0)
+    for i in range(r):
+        for j in range(i + offset(1)):
+            weight = dx[i] * (work[turned_rates + j] if factored else dx[j])
+            if not factored and i == j:
+                weight *= 0.5
+            for k in range(n):
+                work[adjoint + k] += weight * readout[e * n + k]
+            e += offset(1)
+    # (∂M/∂q_m) q̇ = (∂L/∂q_m) Lᵀ q̇ + L (∂L/∂q_m)ᵀ q̇, or (∂E/∂q_m) q̇
+    for m in range(r):
+        for k in range(n):
+            work[values + k] = work[slopes + k] * work[by_q + m * n + k]
+        for e in range(entries):
+            work[derivative + e] = read(readout, e * n, work, values, n)
+        for i in range(r):
+            work[of_derivatives + m * r + i] = 0.0
+            work[turned + i * r + m] = 0.0
+        e = offset(0)
+        for i in range(r):
+            for j in range(i + offset(1)):
+                work[of_derivatives + m * r + j] += work[derivative + e] * dx[i]
+                work[turned + i * r + m] += work[derivative + e] * (
+                    work[turned_rates + j] if factored else dx[j]
+                )
+                if not factored and i != j:
+                    work[turned + j * r + m] += work[derivative + e] * dx[i]
+                e += offset(1)
+        if factored:
+            e = offset(0)
+            for i in range(r):
+                for j in range(i + offset(1)):
+                    work[turned + i * r + m] += work[factor + e] * work[of_derivatives + m * r + j]
+                    e += offset(1)
+    # q̇ᵀ (∂²L/∂q_i ∂q_m) Lᵀ q̇ + (∂L/∂q_i)ᵀ q̇ · (∂L/∂q_m)ᵀ q̇, or ½ q̇ᵀ (∂²E/∂q_i ∂q_m) q̇
+    e = offset(0)
+    for m in range(r):
+        for i in range(m + offset(1)):
+            total = 0.0
+            for k in range(n):
+                bent = work[adjoint + k] * work[bends + k]
+                total += bent * work[by_q + m * n + k] * work[by_q + i * n + k]
+            if even:
+                twice = 2.0 if i == m else 1.0
+                for k in range(n):
+                    total += twice * work[adjoint + k] * work[slopes + k] * layer[e * n + k]
+            for j in range(r if factored else offset(0)):
+                total += work[of_derivatives + m * r + j] * work[of_derivatives + i * r + j]
+            work[curved + m * r + i] = total
+            work[curved + i * r + m] = total
+            e += offset(1)
+    jacobian_of_motion(stiffness, damping, work, inverse, turned, curved, jac)
+    return 0

@@ -7,7 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from flexsurr.simulation.linear_solvers import solve_packed
+from flexsurr.simulation.jacobian import implements_jacobian
+from flexsurr.simulation.linear_solvers import invert_packed, solve_packed
 from flexsurr.simulation.rhs import Array, implements_rhs
 from flexsurr.surrogates.layers import offset
 from flexsurr.surrogates.monomials import (
@@ -16,11 +17,12 @@ from flexsurr.surrogates.monomials import (
     evaluate_monomials,
     factors,
     pull_back,
+    pull_back_along,
     runs,
     write_monomials,
 )
 from flexsurr.surrogates.packed import lower, symmetric
-from flexsurr.surrogates.port_hamiltonian import PortHamiltonian, springs_and_dampers
+from flexsurr.surrogates.port_hamiltonian import PortHamiltonian, jacobian_of_motion, springs_and_dampers
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,10 +100,9 @@ class PolynomialPortHamiltonian(PortHamiltonian):
             np.ascontiguousarray(self.stiffness).ravel(),
             np.ascontiguousarray(self.damping).ravel(),
         )
-        work_size = (
-            2 * (self.pairs + self.packed_size) + 2 * len(self.exponents) + self.packed_size + self.pairs
-        )
-        return kernel, work_size
+        size, count = self.pairs + self.packed_size, len(self.exponents)
+        # of the right-hand side, and what its Jacobian needs besides
+        return kernel, 3 * size + 2 * count + 3 * self.pairs**2 + 2 * size + 2 * count
 
     def settings(self) -> dict[str, Any]:
         """Nothing: the exponents are saved as an array."""
@@ -187,3 +188,59 @@ def _polynomial_port_hamiltonian(kernel, t, x, dx, work):
     for i in range(r):
         dx[r + i] = work[slopes + i] * inverse_q[i]
     springs_and_dampers(stiffness, damping, x, dx)
+
+
+@implements_jacobian(PolynomialPortHamiltonianKernel)
+def _jacobian_of_polynomial(kernel, t, x, dx, jac, work):
+    inverse_q, pieces, mass, stiffness, damping = kernel
+    r = offset(inverse_q.size)
+    entries = r * (r + offset(1)) // offset(2)
+    count = offset(mass.size) // entries
+    # work: as of the right-hand side, then M⁻¹, (∂M/∂q_k) q̇ column by column, curvature, tangents
+    slopes = r + entries
+    phi = slopes + r + entries
+    adjoint = phi + count
+    matrix = adjoint + count
+    inverse = matrix + entries
+    turned = inverse + r * r
+    curvature = turned + r * r
+    tangents = curvature + r * r
+    for i in range(r):
+        work[i] = x[i] * inverse_q[i]
+    write_monomials(pieces, r, phi, work)
+    for e in range(entries):
+        total = 0.0
+        for k in range(count):
+            total += mass[e * count + k] * work[phi + k]
+        work[matrix + e] = total
+    invert_packed(work, np.int64(matrix), np.int64(inverse), np.int64(r))
+    # row i of M q̇, with q̇ held, is a polynomial
+    for i in range(r):
+        for k in range(count):
+            work[adjoint + k] = 0.0
+        for j in range(r):
+            low = min(i, j)
+            high = max(i, j)
+            row = (high * (high + offset(1)) // offset(2) + low) * count
+            for k in range(count):
+                work[adjoint + k] += dx[j] * mass[row + k]
+        pull_back(pieces, r, phi, adjoint, slopes, work)
+        for k in range(r):
+            work[turned + i * r + k] = work[slopes + k] * inverse_q[k]
+    # and so is ½ q̇ᵀ M q̇
+    for k in range(count):
+        work[adjoint + k] = 0.0
+    e = offset(0)
+    for i in range(r):
+        for j in range(i + offset(1)):
+            weight = 0.5 * dx[i] * dx[j] if i == j else dx[i] * dx[j]
+            for k in range(count):
+                work[adjoint + k] += weight * mass[e * count + k]
+            e += offset(1)
+    pull_back(pieces, r, phi, adjoint, slopes, work)
+    for m in range(r):
+        pull_back_along(pieces, r, phi, adjoint, slopes, m, tangents, work)
+        for k in range(r):
+            work[curvature + k * r + m] = work[tangents + k] * inverse_q[k] * inverse_q[m]
+    jacobian_of_motion(stiffness, damping, work, inverse, turned, curvature, jac)
+    return 0

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from flexsurr.simulation.jacobian import implements_jacobian, jacobian
 from flexsurr.simulation.rhs import Array, implements_rhs, rhs
 from flexsurr.storage import Scales
 
@@ -209,7 +210,7 @@ def scaled_kernel(
     """
     rates = np.array(scaling.rates(count))
     kernel = ScaledKernel(field, 1.0 / scaling.states(count), rates, *origins(scaling, count))
-    return kernel, work_size + count
+    return kernel, work_size + 2 * count
 
 
 @implements_rhs(ScaledKernel, inline=False)
@@ -220,3 +221,16 @@ def _scaled(kernel, t, x, dx, work):
     rhs(kernel.field, t, work[:d], dx, work[d:])
     for i in range(d):
         dx[i] = dx[i] * kernel.rates[i] + kernel.dx_from[i]
+
+
+@implements_jacobian(ScaledKernel)
+def _jacobian_of_scaled(kernel, t, x, dx, jac, work):
+    d = x.size
+    for i in range(d):
+        work[i] = (x[i] - kernel.x_from[i]) * kernel.inverse_states[i]
+        work[d + i] = (dx[i] - kernel.dx_from[i]) / kernel.rates[i]
+    taken = jacobian(kernel.field, t, work[:d], work[d : 2 * d], jac, work[2 * d :])
+    for i in range(d):
+        for j in range(d):
+            jac[i, j] *= kernel.rates[i] * kernel.inverse_states[j]
+    return taken
