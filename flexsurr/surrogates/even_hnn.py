@@ -10,9 +10,16 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from flexsurr.simulation.dimension import LANES
+from flexsurr.simulation.jacobian import implements_jacobian
 from flexsurr.simulation.rhs import Array, implements_rhs
 from flexsurr.simulation.side_by_side import implements_rhs_of_block
-from flexsurr.surrogates.activations import ActivationFunction, activation_function, slope, two_slopes
+from flexsurr.surrogates.activations import (
+    ActivationFunction,
+    activation_function,
+    curvature,
+    slope,
+    two_slopes,
+)
 from flexsurr.surrogates.layers import Shapes, forward, layer_shapes, offset, size_of, views
 from flexsurr.surrogates.packed import packed_size, rows_and_columns
 from flexsurr.surrogates.scaling import FeatureScaling
@@ -88,7 +95,9 @@ class EvenHNN(Surrogate):
                 self.sigma.tag, weights[0].copy(), weights[1].copy(), biases.copy(), twice[0], twice[1]
             ), 0
         layer = np.concatenate([weights.ravel(), biases])
-        return EvenHNNKernel(self.sigma.tag, layer, readout), len(weights) + len(readout)
+        # of the right-hand side products and neurons; its Jacobian has more rows of these, one a state
+        rows = 3 + len(self.state_names)
+        return EvenHNNKernel(self.sigma.tag, layer, readout), len(weights) + rows * len(readout)
 
     def settings(self) -> dict[str, Any]:
         """Hidden layer and activation."""
@@ -147,6 +156,25 @@ def _phase_plane_even_hnn(kernel, t, x, dx, work):
         by_p += a * on_p[k]
     dx[0] = by_p * p
     dx[1] = -by_q * q
+
+
+@implements_jacobian(PhasePlaneEvenHNN)
+def _jacobian_of_phase_plane_even_hnn(kernel, t, x, dx, jac, work):
+    activation, w_q, w_p, bias, on_q, on_p = kernel
+    q, p = x[0], x[1]
+    by_q = by_p = by_qq = by_qp = by_pp = 0.0
+    for k in range(bias.size):
+        z = w_q[k] * q * q + w_p[k] * p * p + bias[k]
+        a = slope(activation, z)
+        bent = 2.0 * curvature(activation, z)
+        by_q += a * on_q[k]
+        by_p += a * on_p[k]
+        by_qq += bent * on_q[k] * w_q[k]
+        by_qp += bent * on_q[k] * w_p[k]
+        by_pp += bent * on_p[k] * w_p[k]
+    jac[0, 0], jac[0, 1] = q * p * by_qp, by_p + p * p * by_pp
+    jac[1, 0], jac[1, 1] = -by_q - q * q * by_qq, -q * p * by_qp
+    return 0
 
 
 @implements_rhs_of_block(PhasePlaneEvenHNN, rows=2)
@@ -213,3 +241,63 @@ def _even_hnn(kernel, t, x, dx, work):
                 dx[into + i] += sign * total * x[first + j]
                 dx[into + j] += sign * total * x[first + i]
                 e += offset(1)
+
+
+@implements_jacobian(EvenHNNKernel)
+def _jacobian_of_even_hnn(kernel, t, x, dx, jac, work):
+    activation, layer, readout = kernel
+    d = offset(x.size)
+    r = d // offset(2)
+    n = offset(readout.size)
+    inputs = r * (r + offset(1))
+    # work: products, arguments, c σ′, c σ″, and ∂z/∂x_i row by row
+    z = inputs
+    slopes = z + n
+    bends = slopes + n
+    by_x = bends + n
+    e = offset(0)
+    for first in (offset(0), r):
+        for i in range(r):
+            for j in range(i + offset(1)):
+                work[e] = x[first + i] * x[first + j]
+                e += offset(1)
+    forward(layer, offset(0), inputs, n, work, offset(0), z)
+    for k in range(n):
+        work[slopes + k] = readout[k] * slope(activation, work[z + k])
+    for k in range(n):
+        work[bends + k] = readout[k] * curvature(activation, work[z + k])
+    for k in range(d * n):
+        work[by_x + k] = 0.0
+    e = offset(0)
+    for first in (offset(0), r):
+        for i in range(r):
+            for j in range(i + offset(1)):
+                row = e * n
+                for k in range(n):
+                    work[by_x + (first + i) * n + k] += layer[row + k] * x[first + j]
+                    work[by_x + (first + j) * n + k] += layer[row + k] * x[first + i]
+                e += offset(1)
+    # the Hessian of H in the place of the Jacobian, then turned by Hamilton's equations
+    for i in range(d):
+        for j in range(i + offset(1)):
+            total = 0.0
+            for k in range(n):
+                total += work[bends + k] * work[by_x + i * n + k] * work[by_x + j * n + k]
+            jac[i, j] = total
+            jac[j, i] = total
+    e = offset(0)
+    for first in (offset(0), r):
+        for i in range(r):
+            for j in range(i + offset(1)):
+                total = 0.0
+                for k in range(n):
+                    total += work[slopes + k] * layer[e * n + k]
+                jac[first + i, first + j] += total
+                jac[first + j, first + i] += total
+                e += offset(1)
+    for i in range(r):
+        for j in range(d):
+            by_q = jac[i, j]
+            jac[i, j] = jac[r + i, j]
+            jac[r + i, j] = -by_q
+    return 0

@@ -239,6 +239,21 @@ def _phase_plane_hnn(kernel, t, x, dx, work):
     dx[1] = -dh_dq
 
 
+@implements_jacobian(PhasePlaneHNN)
+def _jacobian_of_phase_plane_hnn(kernel, t, x, dx, jac, work):
+    activation, w_q, w_p, bias, readout = kernel
+    q, p = x[0], x[1]
+    by_qq = by_qp = by_pp = 0.0
+    for k in range(bias.size):
+        a = readout[k] * curvature(activation, w_q[k] * q + w_p[k] * p + bias[k])
+        by_qq += a * w_q[k] * w_q[k]
+        by_qp += a * w_q[k] * w_p[k]
+        by_pp += a * w_p[k] * w_p[k]
+    jac[0, 0], jac[0, 1] = by_qp, by_pp
+    jac[1, 0], jac[1, 1] = -by_qq, -by_qp
+    return 0
+
+
 @implements_rhs_of_block(PhasePlaneHNN)
 def _block_of_hnn(kernel, t, x, dx, work):
     activation, w_q, w_p, bias, readout = kernel

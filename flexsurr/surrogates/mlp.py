@@ -77,6 +77,23 @@ def _phase_plane_mlp(kernel, t, x, dx, work):
     dx[1] = dp + bias_out[1]
 
 
+@implements_jacobian(PhasePlaneMLP)
+def _jacobian_of_phase_plane_mlp(kernel, t, x, dx, jac, work):
+    activation, w_q, w_p, bias, to_dq, to_dp, _ = kernel
+    q, p = x[0], x[1]
+    q_by_q = q_by_p = p_by_q = p_by_p = 0.0
+    for k in range(bias.size):
+        a = slope(activation, w_q[k] * q + w_p[k] * p + bias[k])
+        by_q, by_p = a * w_q[k], a * w_p[k]
+        q_by_q += to_dq[k] * by_q
+        q_by_p += to_dq[k] * by_p
+        p_by_q += to_dp[k] * by_q
+        p_by_p += to_dp[k] * by_p
+    jac[0, 0], jac[0, 1] = q_by_q, q_by_p
+    jac[1, 0], jac[1, 1] = p_by_q, p_by_p
+    return 0
+
+
 @implements_rhs_of_block(PhasePlaneMLP)
 def _block_of_mlp(kernel, t, x, dx, work):
     activation, w_q, w_p, bias, to_dq, to_dp, bias_out = kernel

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexsurr.simulation.dimension import LANES
+from flexsurr.simulation.jacobian import implements_jacobian
 from flexsurr.simulation.rhs import Array, implements_rhs
 from flexsurr.simulation.side_by_side import implements_rhs_of_block
 from flexsurr.surrogates.layers import offset
@@ -71,7 +72,8 @@ class PolynomialHamiltonian(Surrogate):
         parents, variables = products(lower)
         unscaled = symplectic(coefficients.T).T * self.scaling.rates(count)[:, None]
         unscaled /= evaluate_monomials(lower, self.scaling.states(count))
-        return PolynomialKernel(parents, variables, unscaled.ravel()), len(lower)
+        # of the right-hand side the monomials; its Jacobian needs their slopes too
+        return PolynomialKernel(parents, variables, unscaled.ravel()), 2 * len(lower)
 
     def _oscillator(self) -> "OscillatorPolynomial":
         step = 1 if np.any(self.exponents[:, 0] % 2) else 2
@@ -126,6 +128,29 @@ def _oscillator_polynomial(kernel, t, x, dx, work):
         potential = potential * square + (dv_ds[k] * s + dv_ds[k - 1])
     dx[0] = inverse_mass * p
     dx[1] = -ds_dq * (p * p * kinetic + potential)
+
+
+@implements_jacobian(OscillatorPolynomial)
+def _jacobian_of_oscillator(kernel, t, x, dx, jac, work):
+    step, w, half_dw_ds, dv_ds = kernel
+    q, p = x[0], x[1]
+    s = q if step == 1.0 else q * q
+    ds_dq = 1.0 if step == 1.0 else 2.0 * q
+    # Horner's scheme for the three, and for the slopes of the last two
+    inverse_mass = kinetic = potential = slope_of_kinetic = slope_of_potential = 0.0
+    for k in range(w.size - 1, -1, -1):
+        inverse_mass = inverse_mass * s + w[k]
+        slope_of_kinetic = slope_of_kinetic * s + kinetic
+        kinetic = kinetic * s + half_dw_ds[k]
+        slope_of_potential = slope_of_potential * s + potential
+        potential = potential * s + dv_ds[k]
+    jac[0, 0] = 2.0 * p * kinetic * ds_dq
+    jac[0, 1] = inverse_mass
+    jac[1, 0] = -ds_dq * ds_dq * (p * p * slope_of_kinetic + slope_of_potential)
+    if step != 1.0:
+        jac[1, 0] -= 2.0 * (p * p * kinetic + potential)
+    jac[1, 1] = -jac[0, 0]
+    return 0
 
 
 @implements_rhs_of_block(OscillatorPolynomial, rows=2)
@@ -185,3 +210,24 @@ def _polynomial(kernel, t, x, dx, work):
         for k in range(count):
             total += coefficients[row + k] * work[k]
         dx[i] = total
+
+
+@implements_jacobian(PolynomialKernel)
+def _jacobian_of_polynomial(kernel, t, x, dx, jac, work):
+    parents, variables, coefficients = kernel
+    count = parents.size + 1
+    work[0] = 1.0
+    work[count] = 0.0  # slopes follow the monomials
+    for k in range(parents.size):
+        work[k + 1] = work[parents[k]] * x[variables[k]]
+    for j in range(x.size):
+        for k in range(parents.size):
+            slope = work[count + parents[k]] * x[variables[k]]
+            work[count + k + 1] = slope + work[parents[k]] if variables[k] == j else slope
+        for i in range(x.size):
+            row, first = offset(i * count), offset(count)
+            total = 0.0
+            for k in range(first):
+                total += coefficients[row + k] * work[first + k]
+            jac[i, j] = total
+    return 0

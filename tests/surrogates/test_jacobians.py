@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numba import njit
-from random_surrogates import NETWORKS, PORT_HAMILTONIANS, network, port_polynomial
+from random_surrogates import HAMILTONIANS, NETWORKS, PORT_HAMILTONIANS, network, port_polynomial
 
 from flexsurr.simulation import jacobian
 from flexsurr.surrogates import FeatureScaling, compiled
@@ -16,10 +16,13 @@ BY_FEATURE = FeatureScaling(
     x_from=(0.1, 0.2, 0.3, 0.4),
     dx_from=(1.0, 2.0, 3.0, 4.0),
 )
+SMALL = {f"small {name}": network(form, 2, (5,), "half_log") for name, form in NETWORKS.items()}
 DEEP = {name: network(form, 4, (3, 6, 2), "softplus") for name, form in NETWORKS.items()}
 SURROGATES = {
     **PORT_HAMILTONIANS,
     "degree 6": port_polynomial(6, 6, even=True),
+    **HAMILTONIANS,
+    **SMALL,
     **DEEP,
     **{f"{name} by feature": replace(surrogate, scaling=BY_FEATURE) for name, surrogate in DEEP.items()},
 }
