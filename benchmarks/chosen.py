@@ -47,6 +47,16 @@ TRIALS = {
     },
     "wing": {
         **{f"degree {n}": {"architecture": "port_hamiltonian", "degree": n} | SQUARES for n in (4, 6, 8)},
+        **{
+            f"network of entries, {n} atan": {
+                "architecture": "port_hamiltonian",
+                "mass_matrix": "entries",
+                "hidden": (n,),
+                "activation": "atan",
+                "epochs": 300,
+            }
+            for n in (16, 32)
+        },
     },
 }
 REFERENCE = "reduced model"

@@ -120,7 +120,7 @@ def surrogates_of(modes: int) -> dict[str, CompiledSurrogate]:
         "polynomial, degree 4": compiled(
             PolynomialPortHamiltonian(coefficients, *common, exponents=exponents)
         ),
-        f"network, {WIDTH}": compiled(
+        f"network of entries, {WIDTH}": compiled(
             NetworkPortHamiltonian(
                 1e-3 * generator.normal(size=inputs),
                 *common,
@@ -128,6 +128,7 @@ def surrogates_of(modes: int) -> dict[str, CompiledSurrogate]:
                 even=True,
                 hidden=(WIDTH,),
                 activation="atan",
+                factored=False,
             )
         ),
     }

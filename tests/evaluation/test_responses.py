@@ -1,7 +1,9 @@
 """Responses side by side, and the errors by which surrogates are chosen."""
 
+import numpy as np
 import pytest
 
+from flexsurr.evaluation.operations import operations
 from flexsurr.evaluation.responses import (
     RESPONSE_COLUMNS,
     VALIDATION_COLUMNS,
@@ -9,6 +11,7 @@ from flexsurr.evaluation.responses import (
     validation_table,
 )
 from flexsurr.evaluation.scores import long_response_errors, long_responses
+from flexsurr.surrogates import compiled
 
 
 @pytest.mark.parametrize("response", ["free", "forced"])
@@ -66,6 +69,7 @@ def test_an_exploding_surrogate_diverges_and_claims_nothing(study, basis, explod
         "long_response_error_percent_median": None,
         "energy_drift_percent": None,
         "diverged": study.evaluation.long_responses,
+        "operations": operations(compiled(exploding), np.zeros(2)),
     }
 
 

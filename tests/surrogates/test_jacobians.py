@@ -7,6 +7,7 @@ import pytest
 from numba import njit
 from random_surrogates import HAMILTONIANS, NETWORKS, PORT_HAMILTONIANS, network, port_polynomial
 
+from flexsurr.evaluation.operations import in_python
 from flexsurr.simulation import jacobian
 from flexsurr.surrogates import FeatureScaling, compiled
 
@@ -26,6 +27,7 @@ SURROGATES = {
     **DEEP,
     **{f"{name} by feature": replace(surrogate, scaling=BY_FEATURE) for name, surrogate in DEEP.items()},
 }
+COMPILED = ("even", "even network", "polynomial", "even network of three pairs", "dissipative_hnn by feature")
 
 
 @njit(error_model="numpy")
@@ -38,27 +40,39 @@ def state(surrogate):
     return 0.7 * np.random.default_rng(3).uniform(-1.0, 1.0, scales.size) * scales
 
 
-def found(surrogate):
+def found(surrogate, run=evaluate):
     model, x = compiled(surrogate), state(surrogate)
     jac = np.empty((x.size, x.size))
-    taken = evaluate(model.kernel, x, surrogate.derivative(0.0, x), jac, np.full(model.work_size, np.nan))
-    assert taken == 0
+    assert run(model.kernel, x, surrogate.derivative(0.0, x), jac, np.full(model.work_size, np.nan)) == 0
     return jac
+
+
+def in_the_interpreter(kernel, x, dx, jac, work):
+    return in_python(jacobian)(kernel, 0.0, x, dx, jac, work)
+
+
+@pytest.mark.parametrize("name", COMPILED)
+def test_compiled_it_is_the_same(name):
+    surrogate = SURROGATES[name]
+    np.testing.assert_allclose(found(surrogate), found(surrogate, in_the_interpreter), rtol=1e-9)
 
 
 @pytest.mark.parametrize("surrogate", SURROGATES.values(), ids=SURROGATES.keys())
 def test_it_is_what_differences_come_to(surrogate):
+    """Run by Python, for to compile each takes seconds."""
     x, count = state(surrogate), len(surrogate.state_names)
     states, rates = surrogate.scaling.states(count), surrogate.scaling.rates(count)
     steps = 1e-5 * np.diag(states)
     ahead, behind = surrogate.derivative(0.0, x + steps), surrogate.derivative(0.0, x - steps)
     expected = (ahead - behind).T / 2e-5 / rates[:, None]
-    assert found(surrogate) * states / rates[:, None] == pytest.approx(expected, rel=1e-6, abs=1e-7)
+    assert found(surrogate, in_the_interpreter) * states / rates[:, None] == pytest.approx(
+        expected, rel=1e-6, abs=1e-7
+    )
 
 
 def test_hamiltons_equations_have_a_symmetric_one():
     """ẋ = Ω ∇H: Ωᵀ ∂ẋ/∂x is the Hessian of H."""
     r = 2
     omega = np.block([[np.zeros((r, r)), np.eye(r)], [-np.eye(r), np.zeros((r, r))]])
-    hessian = omega.T @ found(DEEP["hnn"])
+    hessian = omega.T @ found(DEEP["hnn"], in_the_interpreter)
     np.testing.assert_allclose(hessian, hessian.T, rtol=1e-12)
