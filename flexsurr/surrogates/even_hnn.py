@@ -141,16 +141,7 @@ def _phase_plane_even_hnn(kernel, t, x, dx, work):
     q_2, p_2 = q * q, p * p
     by_q = 0.0
     by_p = 0.0
-    n = offset(bias.size)
-    half = n // offset(2)
-    for k in range(half):
-        m = half + k
-        a, e = two_slopes(
-            activation, w_q[k] * q_2 + w_p[k] * p_2 + bias[k], w_q[m] * q_2 + w_p[m] * p_2 + bias[m]
-        )
-        by_q += a * on_q[k] + e * on_q[m]
-        by_p += a * on_p[k] + e * on_p[m]
-    for k in range(half + half, n):
+    for k in range(offset(bias.size)):
         a = slope(activation, w_q[k] * q_2 + w_p[k] * p_2 + bias[k])
         by_q += a * on_q[k]
         by_p += a * on_p[k]

@@ -15,6 +15,9 @@ from flexsurr.surrogates.layers import offset
 from flexsurr.surrogates.monomials import Exponents, differentiate, evaluate_monomials, products
 from flexsurr.surrogates.surrogate import Surrogate, symplectic
 
+_LEAST = 3
+"""Coefficients that Horner's scheme takes without a loop."""
+
 
 @dataclass(frozen=True, eq=False)
 class PolynomialHamiltonian(Surrogate):
@@ -86,7 +89,8 @@ class PolynomialHamiltonian(Surrogate):
                 table[0, k] += 2.0 * c
             if k > 0:
                 table[1 if j == 2 else 2, k - 1] += k * c
-        used = np.flatnonzero(table.any(axis=0)).max(initial=0) + 1
+        used = max(int(np.flatnonzero(table.any(axis=0)).max(initial=0)) + 1, _LEAST)
+        table = np.pad(table, [(0, 0), (0, max(used - table.shape[1], 0))])
         return OscillatorPolynomial(float(step), *(row[:used].copy() for row in table))
 
     def settings(self) -> dict[str, Any]:
@@ -99,7 +103,7 @@ class PolynomialHamiltonian(Surrogate):
 
 
 class OscillatorPolynomial(NamedTuple):
-    """H = ½ p² w(s) + V(s) with s = q (`step` 1) or q² (`step` 2): coefficients, lowest first, each (n,)."""
+    """H = ½ p² w(s) + V(s), s = q (`step` 1) or q² (`step` 2): coefficients, lowest first, (n ≥ 3,) each."""
 
     step: float
     w: Array
@@ -113,19 +117,16 @@ def _oscillator_polynomial(kernel, t, x, dx, work):
     q, p = x[0], x[1]
     s = q if step == 1.0 else q * q
     ds_dq = 1.0 if step == 1.0 else 2.0 * q
-    # two terms at a time: a sum waits for half as many multiplications
     n = w.size
-    odd = n % 2
     inverse_mass, kinetic, potential = w[n - 1], half_dw_ds[n - 1], dv_ds[n - 1]
-    if not odd:
-        inverse_mass = inverse_mass * s + w[n - 2]
-        kinetic = kinetic * s + half_dw_ds[n - 2]
-        potential = potential * s + dv_ds[n - 2]
-    square = s * s
-    for k in range(n - 3 + odd, 0, -2):
-        inverse_mass = inverse_mass * square + (w[k] * s + w[k - 1])
-        kinetic = kinetic * square + (half_dw_ds[k] * s + half_dw_ds[k - 1])
-        potential = potential * square + (dv_ds[k] * s + dv_ds[k - 1])
+    for k in range(n - 2, 1, -1):
+        inverse_mass = inverse_mass * s + w[k]
+        kinetic = kinetic * s + half_dw_ds[k]
+        potential = potential * s + dv_ds[k]
+    # the lowest terms without a loop, which would cost as much as they
+    inverse_mass = (inverse_mass * s + w[1]) * s + w[0]
+    kinetic = (kinetic * s + half_dw_ds[1]) * s + half_dw_ds[0]
+    potential = (potential * s + dv_ds[1]) * s + dv_ds[0]
     dx[0] = inverse_mass * p
     dx[1] = -ds_dq * (p * p * kinetic + potential)
 

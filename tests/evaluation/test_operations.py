@@ -73,9 +73,9 @@ def test_what_is_counted_is_what_the_beam_does(modes, variant):
 
 
 def test_a_neuron_takes_what_its_formula_says():
-    """w·x + b: 4; of a pair of neurons 1 + z²: 4, both quotients: 6; times c: 1; into each of two sums: 2."""
-    assert count(network(HNN, 8, "half_log")) - count(network(HNN, 6, "half_log")) == 2 * 14
-    assert count(network(EvenHNN, 8, "half_log")) - count(network(EvenHNN, 6, "half_log")) == 2 * 13
+    """w·x + b: 4; z / (1 + z²): 3; times c: 1; into each of two sums: 2."""
+    assert count(network(HNN, 8, "half_log")) - count(network(HNN, 7, "half_log")) == 12
+    assert count(network(EvenHNN, 8, "half_log")) - count(network(EvenHNN, 7, "half_log")) == 11
 
 
 def test_two_powers_more_take_two_products_and_two_sums_in_each_of_three_polynomials():
