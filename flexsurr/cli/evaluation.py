@@ -1,4 +1,4 @@
-"""What the selected surrogates of a beam are worth, and what they cost, beside its reference model."""
+"""What the selected surrogates are worth, and what they cost, beside a reference model or recordings."""
 
 import logging
 from pathlib import Path
@@ -10,9 +10,11 @@ import pandas as pd
 from flexsurr.beam import EquilibriumNotFound, ModalBasis, reduce
 from flexsurr.cli.command import Job, for_rules
 from flexsurr.cli.runs import SELECTED, most_accurate, selected_runs, selected_surrogates
+from flexsurr.config.files import FILES, FilesStudy, Rollouts
 from flexsurr.config.schema import part_of
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Study
+from flexsurr.evaluation import rollouts as of_rollouts
 from flexsurr.evaluation.candidates import with_learned_loads
 from flexsurr.evaluation.cases import Response, evaluation_cases
 from flexsurr.evaluation.cost import cost_table
@@ -21,6 +23,7 @@ from flexsurr.evaluation.learned_loads import learn_forces, learned_load_table
 from flexsurr.evaluation.published import is_of_the_recipe
 from flexsurr.evaluation.responses import response_table, validation_table
 from flexsurr.evaluation.statics import natural_frequencies, shapes_table, static_tip
+from flexsurr.storage import read_manifest
 from flexsurr.storage.frames import write_frame
 from flexsurr.surrogates import load_map, save_map
 from flexsurr.training import load_dataset
@@ -142,6 +145,39 @@ def watch(job: Job, selection: Path, runs: Path, output: Path) -> None:
             responses.append(surrogate.reference(**given))
         responses.append(surrogate.simulate(**given).called(name))
     library.animate(responses, output, f"{job['study']}, {job['variant']}: free response")
+
+
+@for_rules(**SELECTED, manifest="of the dataset", table="the errors", curves="states against time")
+def rollouts(job: Job, selection: Path, runs: Path, manifest: Path, table: Path, curves: Path) -> None:
+    """Simulate the selected surrogates along held-out trajectories of the user's files.
+
+    `table` has the errors of every rollout, `curves` the first few of them.
+    """
+    settings, held_out = _held_out(job, manifest)
+    surrogates = selected_surrogates(selection, FILES, runs)
+    errors = of_rollouts.rollout_table(surrogates, held_out, settings.integrator)
+    errors.insert(0, "study", job["study"])
+    write_frame(table, errors)
+    drawn = of_rollouts.rollout_curves(surrogates, held_out, settings.integrator, settings.drawn)
+    write_frame(curves, drawn)
+
+
+@for_rules(**SELECTED, manifest="of the dataset", output="the cost table")
+def rollout_cost(job: Job, selection: Path, runs: Path, manifest: Path, output: Path) -> None:
+    """Time the selected surrogates along the same trajectories; alone on the machine.
+
+    A row is a right-hand side, or a rollout, of one surrogate.
+    """
+    settings, held_out = _held_out(job, manifest)
+    surrogates = selected_surrogates(selection, FILES, runs)
+    cost = of_rollouts.rollout_cost(surrogates, held_out, settings.integrator, settings.repeats)
+    cost.insert(0, "study", job["study"])
+    write_frame(output, cost)
+
+
+def _held_out(job: Job, manifest: Path) -> tuple[Rollouts, of_rollouts.HeldOutTrajectories]:
+    settings = part_of(FilesStudy, job["part"]).rollouts
+    return settings, of_rollouts.HeldOutTrajectories.of(read_manifest(manifest), settings.trajectories)
 
 
 def _reduced(job: Job) -> tuple[Study, ModalBasis]:

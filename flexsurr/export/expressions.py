@@ -14,16 +14,15 @@ import numpy as np
 from flexsurr.surrogates.activations import Function, Functions, formulas
 from flexsurr.surrogates.program import ONE_OPERAND, TWO_OPERANDS
 
-MOVING = ("input", "constant", "reshape", "take", "concat")
 EACH = (*ONE_OPERAND, *TWO_OPERANDS, "atan2", "asin")
-REDUCING = ("sum", "amax")
-OTHERS = ("matmul", "where", "scatter_add", "solve")
-OPERATIONS = (*MOVING, *EACH, *REDUCING, *OTHERS)
 
 
 @dataclass(frozen=True, eq=False)
 class Value:
-    """An operation (one of `OPERATIONS`) on operands, of a shape; numbers lie in C's order.
+    """An operation on operands, of a shape; numbers lie in C's order.
+
+    Operations: input, constant, reshape, take, concat; those of `EACH`; sum, amax; matmul, where,
+    scatter_add, solve.
 
     `detail` is what else the operation needs: an input's name, a constant's numbers, the indices of `take`
     and `scatter_add` into the operand's numbers in their order, the number of terms of `sum` and `amax`

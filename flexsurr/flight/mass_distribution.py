@@ -28,10 +28,6 @@ class SurfaceLine(Planform):
         """Length at the span coordinate [m]: y, or height above the root of a vertical surface."""
         return float(np.interp(span, self.spans, self.ends))
 
-    def span_at(self, points: Array) -> Array:
-        """Span coordinate (m,) [m] of `points` (m, 3), those of a left half by their distance."""
-        return points[:, 2] - self.corners[0, 2] if self.vertical else np.abs(points[:, 1])
-
     def at_chord_fraction(self, length: Array, fraction: Array | float) -> Array:
         """Points (m, 3) behind the leading edge by a fraction of the chord, along x."""
         leading = self.leading_edge(length)

@@ -142,22 +142,6 @@ def elastic_modes(modes: FreeModes, elastic: pd.DataFrame, largest_m: float = 2.
     return figure
 
 
-def mass_table(model: StickModel) -> pd.DataFrame:
-    """Columns part, mass_kg, x_m, y_m, z_m: every lumped mass."""
-    return pd.DataFrame(
-        [
-            {
-                "part": m.part,
-                "mass_kg": m.mass,
-                "x_m": m.position[0],
-                "y_m": m.position[1],
-                "z_m": m.position[2],
-            }
-            for m in model.skeleton.masses
-        ]
-    )
-
-
 def _fuselage(model: StickModel) -> Array:
     """Quadrilaterals (k, 4, 3) of a body of revolution, pointed at both ends."""
     aircraft = model.aircraft

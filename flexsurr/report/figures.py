@@ -13,7 +13,6 @@ from flexsurr.report.airliner_flight_figures import (
     rudder_doublet,
 )
 from flexsurr.report.airliner_geometry_figures import elastic_modes, figure_16, figure_17
-from flexsurr.report.airliner_learning_figures import coefficient_errors
 from flexsurr.report.architecture_figures import architecture_errors
 from flexsurr.report.beam_figures import figure_08, figure_09, reduced_against_full, static_deflection
 from flexsurr.report.cost_figures import cost_accuracy
@@ -27,11 +26,12 @@ from flexsurr.report.response_figures import (
     figure_15,
     forced_response_of_every_model,
     free_response_of_every_model,
+    phase_plane,
+    rollouts,
 )
-from flexsurr.report.rollout_figures import phase_plane, rollouts
 from flexsurr.report.schematics import figure_05, figure_06, figure_07, figure_11
 from flexsurr.report.shape_figures import mode_shapes, static_shapes
-from flexsurr.report.training_figures import training_epochs, training_loss
+from flexsurr.report.training_figures import coefficient_errors, training_epochs, training_loss
 from flexsurr.report.trial_figures import trials
 
 DRAW: dict[str, Callable[..., Figure]] = {

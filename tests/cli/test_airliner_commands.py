@@ -16,8 +16,8 @@ from flexsurr.cli.training import train_map
 from flexsurr.config.flight import DoubletTimes
 from flexsurr.config.settings import load
 from flexsurr.report.airliner_flight_figures import figure_19
-from flexsurr.report.airliner_learning_figures import coefficient_errors
 from flexsurr.report.tables import airliner_accuracy, airliner_modes, cost
+from flexsurr.report.training_figures import coefficient_errors
 from flexsurr.storage import StorageError, read_samples
 from flexsurr.surrogates import load_map
 from flexsurr.tracking.store import read_store

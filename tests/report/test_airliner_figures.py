@@ -17,8 +17,8 @@ from flexsurr.report.airliner_flight_figures import (
     figure_21,
     rudder_doublet,
 )
-from flexsurr.report.airliner_learning_figures import coefficient_errors
 from flexsurr.report.style import BLUE
+from flexsurr.report.training_figures import coefficient_errors
 
 
 @pytest.fixture
