@@ -10,11 +10,10 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
-from flexsurr.config.aircraft_mass import Masses
+from flexsurr.config.aircraft_structure import Masses, Stiffness
 from flexsurr.config.reading import Source as FileOfValues
 from flexsurr.config.reading import build, read_yaml
 from flexsurr.config.schema import Record
-from flexsurr.config.stiffness import Stiffness
 from flexsurr.config.structure import NotNegative, Positive
 
 Source = Literal["published", "transcribed", "digitised", "assumed"]

@@ -5,7 +5,6 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, field_validator, model_validator
 
-from flexsurr.config.activation import Activation
 from flexsurr.config.history import Sine
 from flexsurr.config.load import Load, TipForce
 from flexsurr.config.schema import Record
@@ -15,6 +14,8 @@ Variant = Literal["hamiltonian", "as_printed"]
 Count = Annotated[int, Field(ge=1)]
 Share = Annotated[float, Field(gt=0.0, lt=1.0)]
 SplitBy = Literal["trajectory", "sample"]
+Activation = Literal["elu", "tanh", "softplus", "silu", "squareplus", "half_log", "atan"]
+"""Activation functions; flexsurr.surrogates.activations has them."""
 
 DEFAULT = "default"
 """What the sweep that figures show, and the dataset that surrogates are validated on, are called."""

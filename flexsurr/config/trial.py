@@ -12,12 +12,11 @@ from typing import Annotated, Any, ClassVar, Literal, Self, cast, get_args
 
 from pydantic import AfterValidator, Field, ValidationError, create_model, model_validator
 
-from flexsurr.config.activation import Activation
 from flexsurr.config.errors import nearest
 from flexsurr.config.own_network import own_network
 from flexsurr.config.schema import Record
 from flexsurr.config.structure import Positive
-from flexsurr.config.study import Count
+from flexsurr.config.study import Activation, Count
 
 ScalingKind = Literal["canonical", "per_feature", "min_max"]
 Sampling = Literal["pseudo_random", "sobol"]

@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 
 from flexsurr.config.aircraft import Aircraft
-from flexsurr.config.stiffness import BeamStiffness
+from flexsurr.config.aircraft_structure import BeamStiffness
 from flexsurr.flight.mass_distribution import SurfaceLine, engine_mass, fuselage_masses, surface_masses
 from flexsurr.flight.skeleton import BeamElement, LumpedMass, Section, Skeleton
 from flexsurr.simulation.rhs import Array

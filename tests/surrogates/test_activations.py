@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numba import njit
 
-from flexsurr.config.activation import Activation
+from flexsurr.config.study import Activation
 from flexsurr.surrogates.activations import ACTIVATIONS, curvature, exponential, logarithm, slope, value
 
 EPS = np.finfo(np.float64).eps
