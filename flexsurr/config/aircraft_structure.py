@@ -1,4 +1,4 @@
-"""What an aircraft file says of structure: the stiffness of its beams, and its masses."""
+"""Structure of an aircraft: stiffness by element, from the root or the nose outwards; mass by parts."""
 
 from typing import Annotated, Literal, Self
 
