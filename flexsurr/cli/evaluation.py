@@ -21,8 +21,9 @@ from flexsurr.evaluation.cost import cost_table
 from flexsurr.evaluation.energy import energy_table
 from flexsurr.evaluation.learned_loads import learn_forces, learned_load_table
 from flexsurr.evaluation.published import is_of_the_recipe
-from flexsurr.evaluation.responses import response_table, validation_table
+from flexsurr.evaluation.responses import response_table
 from flexsurr.evaluation.statics import natural_frequencies, shapes_table, static_tip
+from flexsurr.evaluation.validation import validation_table
 from flexsurr.storage import read_manifest
 from flexsurr.storage.frames import write_frame
 from flexsurr.surrogates import load_map, save_map

@@ -6,7 +6,7 @@ One function per file of results/evaluation/<study>/:
 |---|---|
 | statics.parquet | `statics.static_tip` |
 | frequencies.parquet | `statics.natural_frequencies` |
-| validation.parquet | `responses.validation_table` |
+| validation.parquet | `validation.validation_table` |
 | response-<variant>-<response>.parquet | `responses.response_table` |
 | energy-<variant>.parquet | `energy.energy_table` |
 | cost-<variant>-<response>.parquet | `cost.cost_table` |

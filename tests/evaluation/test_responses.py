@@ -6,11 +6,10 @@ import pytest
 from flexsurr.evaluation.operations import operations
 from flexsurr.evaluation.responses import (
     RESPONSE_COLUMNS,
-    VALIDATION_COLUMNS,
     response_table,
-    validation_table,
 )
 from flexsurr.evaluation.scores import long_response_errors, long_responses
+from flexsurr.evaluation.validation import VALIDATION_COLUMNS, validation_table
 from flexsurr.surrogates import compiled
 
 
