@@ -8,6 +8,7 @@ from flexsurr.beam.initial_conditions import draw_initial_conditions
 from flexsurr.beam.kinematics import element_frames, mass_matrix, node_positions, tip_position, tip_twist
 from flexsurr.beam.loaded import LoadedModel, loaded
 from flexsurr.beam.loads import Load, load_forces
+from flexsurr.beam.mirrors import mirrors
 from flexsurr.beam.models import Implementation, full_order, reduced_order
 from flexsurr.beam.modes import natural_modes, reduce
 from flexsurr.beam.projection import ModalBasis
@@ -30,6 +31,7 @@ __all__ = [
     "load_forces",
     "loaded",
     "mass_matrix",
+    "mirrors",
     "natural_modes",
     "node_positions",
     "reduce",

@@ -4,7 +4,7 @@ import numpy as np
 
 from flexsurr.beam.chain import stiffness_matrix
 from flexsurr.beam.projection import ModalBasis
-from flexsurr.config.study import InitialConditions
+from flexsurr.config.study import HigherModes, InitialConditions
 from flexsurr.simulation.rhs import Array
 
 
@@ -40,6 +40,22 @@ def initial_states(basis: ModalBasis, settings: InitialConditions, unit: Array) 
     q = np.deg2rad(settings.q_min_deg + (settings.q_max_deg - settings.q_min_deg) * of_q)
     p = settings.p_min_kg_m2_s + (settings.p_max_kg_m2_s - settings.p_min_kg_m2_s) * of_p
     if settings.kind == "modal":
-        return np.hstack([q / basis.unit_norms, p * basis.unit_norms])
+        of_q, of_p = _shares(basis, settings.higher_modes)
+        return np.hstack([q * of_q / basis.unit_norms, p * of_p * basis.unit_norms])
     springs = stiffness_matrix(basis.structure) @ basis.modes
     return np.hstack([np.linalg.solve(basis.stiffness, (q @ springs).T).T, p @ basis.modes])
+
+
+def _shares(basis: ModalBasis, higher_modes: HigherModes) -> tuple[Array, Array]:
+    """(r,) each: what of their ranges unit-norm modes take, coordinates and momenta; 1 for the first mode.
+
+    At its share a mode has ½ k q² = e ½ k₁ q₁² and p²/(2 m) = e p₁²/(2 m₁), with e = 1 as_energetic and
+    e = (ω₁/ω)² as_forced: a force F on each mass-normalised mode stores ½ (F/ω)² in it.
+    """
+    omega = basis.omega_rad_s
+    if higher_modes == "alike":
+        return np.ones_like(omega), np.ones_like(omega)
+    springs = np.diag(basis.stiffness) / basis.unit_norms**2
+    masses = springs / omega**2
+    share = np.ones_like(omega) if higher_modes == "as_energetic" else omega[0] / omega
+    return share * np.sqrt(springs[0] / springs), share * np.sqrt(masses / masses[0])

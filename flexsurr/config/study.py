@@ -16,6 +16,7 @@ Share = Annotated[float, Field(gt=0.0, lt=1.0)]
 SplitBy = Literal["trajectory", "sample"]
 Activation = Literal["elu", "tanh", "softplus", "silu", "squareplus", "half_log", "atan"]
 """Activation functions; flexsurr.surrogates.activations has them."""
+HigherModes = Literal["alike", "as_energetic", "as_forced"]
 
 DEFAULT = "default"
 """What the sweep that figures show, and the dataset that surrogates are validated on, are called."""
@@ -115,6 +116,21 @@ class InitialConditions(Record):
     """Least momentum [kg m²/s]."""
     p_max_kg_m2_s: float = 1.5
     """Largest momentum [kg m²/s]."""
+    # left out where it is not given, so that datasets and runs keep the names they had before there was it
+    higher_modes: HigherModes = Field(default="alike", exclude_if=lambda value: value == "alike")
+    """What the ranges, of a modal kind, are to the modes above the first. alike: the same. as_energetic: they
+    shrink or grow, so that each mode has the energy of the first. as_forced: they shrink, as if a load of the
+    same size on every mass-normalised mode had been let go. The energy of many modes makes violent motion,
+    which soon is chaotic: nothing can follow it for long.
+    """
+
+    @model_validator(mode="after")
+    def _modes_are_drawn(self) -> Self:
+        if self.kind == "joint" and self.higher_modes != "alike":
+            raise ValueError(
+                f"higher_modes: {self.higher_modes!r} is not allowed with kind: joint; allowed: alike"
+            )
+        return self
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:
