@@ -91,6 +91,19 @@ def factors(exponents: Exponents) -> tuple[NDArray[np.int64], NDArray[np.int64]]
     return np.array(parents, dtype=np.int64), np.array(of_factors, dtype=np.int64)
 
 
+def closed(exponents: Exponents) -> Exponents:
+    """The set with the constant, and what more `factors` needs to build it, by degree."""
+    present = {tuple(row) for row in exponents.tolist()} | {(0,) * exponents.shape[1]}
+    pending = list(present)
+    while pending:
+        row = pending.pop()
+        once = _divided(row)
+        if {once, _divided(once)}.isdisjoint(present):
+            present.add(_divided(once))
+            pending.append(_divided(once))
+    return np.array(sorted(present, key=lambda row: (sum(row), row)), dtype=np.int64)
+
+
 def runs(exponents: Exponents) -> tuple[NDArray[np.intp], NDArray[np.uint64]]:
     """How to build a set, as `factors` does, in few pieces: an order (count,) of it, and the pieces (n, 4).
 

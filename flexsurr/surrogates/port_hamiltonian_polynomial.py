@@ -23,6 +23,9 @@ from flexsurr.surrogates.monomials import (
 )
 from flexsurr.surrogates.packed import lower, symmetric
 from flexsurr.surrogates.port_hamiltonian import PortHamiltonian, jacobian_of_motion, springs_and_dampers
+from flexsurr.surrogates.sparse_mass import sparse_kernel
+
+SPARSE = 0.7  # of all coefficients: with fewer that are not zero, to look them up costs less than to use all
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,11 +91,16 @@ class PolynomialPortHamiltonian(PortHamiltonian):
         return symmetric(np.einsum("kem,...m->...ke", coefficients, monomials), self.pairs)
 
     def own_kernel(self) -> tuple[NamedTuple, int]:
-        """Monomials as products, their adjoints for the gyroscopic term, and a small system."""
+        """Monomials as products, their adjoints for the gyroscopic term, and a small system.
+
+        Where coefficients are zero, entries of M with the same monomials are made together, of those alone.
+        """
         _, of_q, of_p, of_rates = self.scales()
         rows, columns = np.tril_indices(self.pairs)
         order, pieces = runs(self.exponents)
         unscaled = self._coefficients[:, order] * (of_p[rows] / of_rates[columns])[:, None]
+        if np.count_nonzero(unscaled) < SPARSE * unscaled.size:
+            return sparse_kernel(1.0 / of_q, pieces, unscaled, self.stiffness, self.damping)
         kernel = PolynomialPortHamiltonianKernel(
             1.0 / of_q,
             pieces,

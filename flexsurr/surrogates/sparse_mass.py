@@ -1,0 +1,132 @@
+"""Compiled equations of a polynomial mass matrix most of whose coefficients are zero.
+
+Entries of M with the same monomials are a group: these are fetched once, side by side, and every entry of the
+group is a dense product with them. Mirror symmetry makes few groups of many entries.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexsurr.simulation.linear_solvers import solve_packed
+from flexsurr.simulation.rhs import Array, implements_rhs
+from flexsurr.surrogates.layers import offset
+from flexsurr.surrogates.monomials import pull_back, write_monomials
+from flexsurr.surrogates.port_hamiltonian import springs_and_dampers
+
+
+class SparseMassKernel(NamedTuple):
+    """Monomials of q times `inverse_q` (r,), as `write_monomials` makes them of `pieces`.
+
+    A row of `groups` is a group's number of monomials and of entries. `places` has the monomials of one group
+    after the other, `entries` which packed entries of M are of it, `mass` their coefficients, entry by entry.
+    `stiffness` and `damping` are (r, r) row by row.
+    """
+
+    inverse_q: Array
+    pieces: NDArray[np.uint64]
+    groups: NDArray[np.uint64]
+    places: NDArray[np.uint64]
+    entries: NDArray[np.uint64]
+    mass: Array
+    stiffness: Array
+    damping: Array
+    monomials: int
+
+
+def sparse_kernel(
+    inverse_q: Array, pieces: NDArray[np.uint64], coefficients: Array, stiffness: Array, damping: Array
+) -> tuple[NamedTuple, int]:
+    """The kernel of `coefficients` (entry, monomial), and the size of its workspace."""
+    entries, count = coefficients.shape
+    by_pattern: dict[bytes, list[int]] = {}
+    for e, present in enumerate(coefficients != 0.0):
+        by_pattern.setdefault(present.tobytes(), []).append(e)
+    groups, places, order, mass = [], [], [], []
+    for pattern, members in by_pattern.items():
+        present = np.flatnonzero(np.frombuffer(pattern, dtype=np.bool_))
+        groups.append((len(present), len(members)))
+        places.append(present)
+        order += members
+        mass.append(coefficients[np.ix_(members, present)].ravel())
+    kernel = SparseMassKernel(
+        inverse_q,
+        pieces,
+        np.array(groups, dtype=np.uint64),
+        np.concatenate(places).astype(np.uint64),
+        np.array(order, dtype=np.uint64),
+        np.concatenate(mass),
+        np.ascontiguousarray(stiffness).ravel(),
+        np.ascontiguousarray(damping).ravel(),
+        count,
+    )
+    r = len(inverse_q)
+    return kernel, 3 * r + 3 * entries + 3 * count
+
+
+@implements_rhs(SparseMassKernel, inline=False)
+def _sparse_mass(kernel, t, x, dx, work):
+    inverse_q, pieces, groups, places, order, mass, stiffness, damping, monomials = kernel
+    r = offset(inverse_q.size)
+    entries = offset(order.size)
+    count = offset(monomials)
+    # work: factors and their adjoints, monomials and theirs, those of a group, the packed M, the rates
+    slopes = r + entries
+    phi = slopes + r + entries
+    adjoint = phi + count
+    fetched = adjoint + count
+    matrix = fetched + count
+    rates = matrix + entries
+    for i in range(r):
+        work[i] = x[i] * inverse_q[i]
+    write_monomials(pieces, r, phi, work)
+    place = offset(0)
+    e = offset(0)
+    row = offset(0)
+    for g in range(len(groups)):
+        some = groups[g, 0]
+        for k in range(some):
+            work[fetched + k] = work[phi + places[place + k]]
+        for _ in range(groups[g, 1]):
+            total = 0.0
+            for k in range(some):
+                total += mass[row + k] * work[fetched + k]
+            work[matrix + order[e]] = total
+            row += some
+            e += offset(1)
+        place += some
+    for i in range(r):
+        work[rates + i] = x[r + i]
+    solve_packed(work, np.int64(matrix), np.int64(rates), np.int64(r))
+    for i in range(r):
+        dx[i] = work[rates + i]
+    # the adjoint of ½ q̇ᵀ M q̇: by the entries of M, in their places; by the monomials; by q
+    e = matrix
+    for i in range(r):
+        for j in range(i + offset(1)):
+            weight = work[rates + i] * work[rates + j]
+            work[e] = 0.5 * weight if i == j else weight
+            e += offset(1)
+    for k in range(count):
+        work[adjoint + k] = 0.0
+    place = offset(0)
+    e = offset(0)
+    row = offset(0)
+    for g in range(len(groups)):
+        some = groups[g, 0]
+        for k in range(some):
+            work[fetched + k] = 0.0
+        for _ in range(groups[g, 1]):
+            weight = work[matrix + order[e]]
+            for k in range(some):
+                work[fetched + k] += weight * mass[row + k]
+            row += some
+            e += offset(1)
+        for k in range(some):
+            work[adjoint + places[place + k]] += work[fetched + k]
+        place += some
+    pull_back(pieces, r, phi, adjoint, slopes, work)
+    for i in range(r):
+        dx[r + i] = work[slopes + i] * inverse_q[i]
+    springs_and_dampers(stiffness, damping, x, dx)
