@@ -106,10 +106,24 @@ class FieldPolynomial(StateField):
     """polynomial gives an energy; port_hamiltonian mass matrix, stiffness and damping."""
     degree: Count
     """Degree of the polynomials."""
+    # left out where it is not given, as give_up below
+    terms: Literal["all", "sparse"] = Field(default="all", exclude_if=lambda value: value == "all")
+    """Which monomials of the mass matrix there are. all: every one up to the degree. sparse, of
+    port_hamiltonian with configurations alone: of each entry those that mirror symmetry leaves, and of these
+    the fewest that are about as accurate.
+    """
     potential: PotentialKind | None = Field(default=None, exclude_if=lambda value: value is None)
     """Of port_hamiltonian alone. polynomial: its potential is one, which knows weight and any equilibrium, as
     a structure under gravity needs. None: ½ qᵀKq.
     """
+
+    @model_validator(mode="after")
+    def _a_known_matrix_is_sparse(self) -> Self:
+        if self.terms == "sparse" and (
+            self.architecture != "port_hamiltonian" or self.configurations is None
+        ):
+            raise ValueError("terms: 'sparse' takes port_hamiltonian and configurations; allowed: all")
+        return self
 
     @model_validator(mode="after")
     def _an_energy_holds_its_potential(self) -> Self:

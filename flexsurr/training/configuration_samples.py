@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexsurr.beam import ModalBasis, reduced_order
+from flexsurr.beam import ModalBasis, mirrors, reduced_order
 from flexsurr.beam.linear_motion import sample_configurations
 from flexsurr.config.study import InitialConditions, Variant
 from flexsurr.simulation.rhs import Array
@@ -21,13 +21,14 @@ class ConfigurationSamples(Dataset):
 
     `mass` (m, r, r) is M(η) at the training samples, `forces` (m, r) what acts there at rest, −∂V/∂η.
     `stiffness` (r, r) is K of the forces −K η at rest, the best one where gravity makes them another function
-    of η; `damping` (r, r) is C.
+    of η; `damping` (r, r) is C. `mirrors` (k, r) are changes of sign of η under which M only changes signs.
     """
 
     mass: Array
     forces: Array
     stiffness: Array
     damping: Array
+    mirrors: Array
 
 
 def configuration_samples(
@@ -62,6 +63,7 @@ def configuration_samples(
         forces=forces[:count],
         stiffness=_stiffness(eta, forces),
         damping=basis.damping,
+        mirrors=mirrors(basis),
     )
 
 

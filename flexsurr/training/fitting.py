@@ -199,7 +199,9 @@ def _fit_linear(trial: FieldPolynomial, source: SampleSource, report: Report | N
         surrogate = fit_polynomial(source, trial.degree)
     else:
         try:
-            surrogate = fit_port_hamiltonian(source, trial.degree, trial.potential == "polynomial")
+            surrogate = fit_port_hamiltonian(
+                source, trial.degree, trial.potential == "polynomial", trial.terms == "sparse"
+            )
         except NotPositiveDefinite as failure:
             surrogate, reason = failure.surrogate, str(failure)
     training = FieldErrors.over(surrogate, source.training_blocks())

@@ -34,13 +34,21 @@ from flexsurr.surrogates.packed import pack, packed_size, semidefinite_factor, s
 from flexsurr.surrogates.potential import Potential
 from flexsurr.training.configuration_samples import ConfigurationSamples
 from flexsurr.training.dataset import SampleSource, for_each_piece
+from flexsurr.training.known_mass import (
+    AS_GOOD,
+    CHUNK,
+    SeparateEntries,
+    fit_sparse,
+    of_degrees,
+    of_known_springs,
+    with_constant,
+)
 from flexsurr.training.least_squares import Triangle
 from flexsurr.training.losses import FieldErrors
 
-CHUNK = 1 << 22  # elements of the matrix that exist at a time: 32 MB
+LARGEST_TOGETHER = 4000  # unknowns of all entries of M that are fitted at once
 POTENTIAL_DEGREE = 10
 POTENTIAL_MONOMIALS = 400
-AS_GOOD = 2.0  # a smaller set of monomials is kept if it validates within this factor of the larger
 
 
 class NotPositiveDefinite(Exception):
@@ -71,7 +79,7 @@ class InverseDynamics:
         self.scaling, self._spread = scaling, channel_spread(scaling, source.scales)
         self._states = source.state_names, source.state_units
         self.pairs = len(scaling.q)
-        self.exponents = _monomials(self.pairs, degree)
+        self.exponents = with_constant(self.pairs, degree)
         self._lowered, self._derivative = differentiate(self.exponents)
         self._entries = packed_size(self.pairs)
         self._springs = _potential_monomials(self.pairs) if potential else None
@@ -115,7 +123,7 @@ class InverseDynamics:
 
     def solve(self, even: bool) -> PolynomialPortHamiltonian:
         """The fitted surrogate; `even`: with even powers alone, which is what a symmetric structure has."""
-        kept = _kept(self.exponents, even)
+        kept = of_degrees(self.exponents, even)
         _, first, second, last = self._columns
         chosen = np.concatenate([np.tile(kept, self._entries), np.ones(last - first, dtype=np.bool_)])
         solution = self._triangle.solve(chosen)
@@ -147,7 +155,7 @@ class MassMatrices:
         self.scaling, self._samples = scaling, samples
         self.pairs = len(scaling.q)
         self._potential = potential_of(samples, scaling) if potential else None
-        self.exponents = _monomials(self.pairs, degree)
+        self.exponents = with_constant(self.pairs, degree)
         self._entries = packed_size(self.pairs)
         self._triangle = Triangle(self._entries * len(self.exponents))
         units = symmetric(np.eye(self._entries), self.pairs)
@@ -169,34 +177,11 @@ class MassMatrices:
 
     def solve(self, even: bool) -> PolynomialPortHamiltonian:
         """The fitted surrogate; `even`: with even powers alone, which is what a symmetric structure has."""
-        kept = _kept(self.exponents, even)
+        kept = of_degrees(self.exponents, even)
         coefficients = self._triangle.solve(np.tile(kept, self._entries)).reshape(self._entries, -1)
-        q, energy, action = np.array(self.scaling.q), self.scaling.energy, self.scaling.action
-        of_products = np.outer(q, q)
-        parameters = [
-            coefficients * (pack(of_products) * energy / action**2)[:, None],
-            pack(self._samples.stiffness * of_products / energy) * (self._potential is None),
-            semidefinite_factor(self._samples.damping * of_products / action),
-        ]
-        return PolynomialPortHamiltonian(
-            np.concatenate([part.ravel() for part in parameters]),
-            self.scaling,
-            self._samples.state_names,
-            self._samples.state_units,
-            self.exponents[kept],
-            potential=self._potential,
+        return of_known_springs(
+            coefficients, self.exponents[kept], self.scaling, self._samples, self._potential
         )
-
-
-def _monomials(pairs: int, degree: int) -> Exponents:
-    """Those of total degree ≤ `degree`, the constant first."""
-    constant = np.zeros((1, pairs), dtype=np.int64)
-    return np.concatenate([constant, monomials_to_degree(pairs, degree)])
-
-
-def _kept(exponents: Exponents, even: bool) -> NDArray[np.bool_]:
-    """A mask of all of them, or of those of even degree."""
-    return np.asarray(exponents.sum(axis=1) % (2 if even else 1) == 0)
 
 
 def potential_of(samples: ConfigurationSamples, scaling: PairScaling) -> Potential:
@@ -230,21 +215,30 @@ def _potential_monomials(pairs: int) -> Exponents:
 
 
 def fit_port_hamiltonian(
-    source: SampleSource, degree: int, potential: bool = False
+    source: SampleSource, degree: int, potential: bool = False, sparse: bool = False
 ) -> PolynomialPortHamiltonian:
     """The polynomial port-Hamiltonian surrogate of total degree ≤ `degree` in M, from the training samples.
 
-    `potential`: with a polynomial potential in the place of K.
+    `potential`: with a polynomial potential in the place of K. `sparse`, of configurations alone: with the
+    monomials of `known_mass.fit_sparse`.
 
-    By inverse dynamics, or from the mass matrices themselves where the samples have them. Odd powers are
+    By inverse dynamics, or from the mass matrices themselves where the samples have them; so many entries
+    that they are too much for one problem each by itself. Odd powers are
     kept where they make validation better by a factor of `AS_GOOD`. Samples are read twice,
     block by block. Raises NotPositiveDefinite if its mass matrix is none at a validation state, ValueError
     where the samples don't vary or are not finite.
     """
     scaling = pair_scaling(source.scales)
-    problem: MassMatrices | InverseDynamics
+    problem: MassMatrices | SeparateEntries | InverseDynamics
+    if sparse:
+        assert isinstance(source, ConfigurationSamples)  # as configuration has seen to
+        return _sparse(source, degree, potential_of(source, scaling) if potential else None)
     if isinstance(source, ConfigurationSamples):
-        problem = MassMatrices(degree, scaling, source, potential)
+        if packed_size(len(scaling.q)) * math.comb(len(scaling.q) + degree, degree) > LARGEST_TOGETHER:
+            of_rest = potential_of(source, scaling) if potential else None
+            problem = SeparateEntries(degree, scaling, source, of_rest)
+        else:
+            problem = MassMatrices(degree, scaling, source, potential)
     else:
         problem = InverseDynamics(degree, scaling, source, potential)
         for_each_piece(source.training_blocks(), problem.add)
@@ -253,6 +247,16 @@ def fit_port_hamiltonian(
     if even.indefinite_at is not None and full.indefinite_at is not None:
         raise NotPositiveDefinite(even.surrogate, even.indefinite_at)
     return even.surrogate if even.loss() <= AS_GOOD * full.loss() else full.surrogate
+
+
+def _sparse(
+    samples: ConfigurationSamples, degree: int, potential: Potential | None
+) -> PolynomialPortHamiltonian:
+    candidate = _Candidate(fit_sparse(samples, degree, potential))
+    for_each_piece(samples.validation_blocks(), candidate.add)
+    if candidate.indefinite_at is not None:
+        raise NotPositiveDefinite(candidate.surrogate, candidate.indefinite_at)
+    return candidate.surrogate
 
 
 class _Candidate:
