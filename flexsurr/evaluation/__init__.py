@@ -11,6 +11,7 @@ One function per file of results/evaluation/<study>/:
 | energy-<variant>.parquet | `energy.energy_table` |
 | cost-<variant>-<response>.parquet | `cost.cost_table` |
 | learned_loads-<variant>.parquet | `learned_loads.learned_load_table` |
+| rivals-<modes>.parquet | `rivals.rivals_table` |
 
 and `scores.long_response_errors`, by which runs are ranked (`selection`), `scores.held_out_errors` of their
 fields, `energy.energy_balance`, and `dissipative_structure.dissipative_asymmetry`, how far a field

@@ -33,6 +33,17 @@ COST_COLUMNS = (
     "diverged",
 )
 
+CROSSOVER_COLUMNS = (
+    "modes",
+    "model",
+    "parameters",
+    "wall_s",
+    "relative_to_compiled_percent",
+    "tip_error_percent",
+    "diverged",
+    "run_id",
+)
+
 MODE_COLUMNS = ("mode", "reference_real", "reference_imag", "surrogate_real", "surrogate_imag")
 
 ACCURACY_COLUMNS = ("output", "train_nmse", "validation_nmse", "validation_r2", "model")

@@ -1,7 +1,7 @@
 """What a response costs and what it is worth: every model, implementation and integrator."""
 
 import logging
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
@@ -124,14 +124,27 @@ def measurements(
     learned = list(learned)
     # before torch is there: its threads would not survive a fork
     compile_ahead(
-        partial(_first_steps, setup, basis, references[0])
+        partial(first_steps, setup, basis, references[0])
         for setup in setups([*candidates(basis, variant, surrogates), *learned], settings.integrators)
         if setup.candidate.steppable
     )
     models = [*candidates(basis, variant, surrogates, with_torch=True), *learned]
+    timed = setups(models, settings.integrators)
+    return measured(timed, settings, basis, variant, references, f"{variant} {response}")
+
+
+def measured(
+    setups: Iterable[Setup],
+    settings: EvaluationSettings,
+    basis: ModalBasis,
+    variant: Variant,
+    references: Sequence[ReferenceSolution],
+    what: str,
+) -> pd.DataFrame:
+    """The rows of `measurements` for these setups; `what` names them in the log."""
     timed: list[Timed] = []
     with measuring():
-        for setup in setups(models, settings.integrators):
+        for setup in setups:
             repeats = setup.repeats(settings)
             simulated = [
                 _timed(setup, basis, reference, repeats)
@@ -139,9 +152,8 @@ def measurements(
             ]
             timed += simulated
             log.info(
-                "%s %s: %s, %d simulations of %g s at %.3g s each",
-                variant,
-                response,
+                "%s: %s, %d simulations of %g s at %.3g s each",
+                what,
                 setup,
                 len(simulated),
                 settings.duration_s,
@@ -152,9 +164,8 @@ def measurements(
         rows = pd.DataFrame(pool.map(partial(_measured, basis, variant), timed))
     for names, part in rows.groupby(["model", "implementation", "integrator"], sort=False):
         log.info(
-            "%s %s: %s, worst tip error %.3g %%, %d diverged",
-            variant,
-            response,
+            "%s: %s, worst tip error %.3g %%, %d diverged",
+            what,
             " ".join(map(str, names)),
             part["tip_error_percent"].max(),
             (~part["completed"]).sum(),
@@ -174,7 +185,7 @@ class Timed:
 
 def _timed(setup: Setup, basis: ModalBasis, reference: ReferenceSolution, repeats: int) -> Timed:
     model = setup.candidate.under(basis, reference.case)
-    _first_steps(setup, basis, reference)
+    first_steps(setup, basis, reference)
     trajectory, wall_s = wall_time(
         partial(_run, model, reference.t, reference.case.x0, setup.integrator), repeats, ENOUGH_S
     )
@@ -209,7 +220,7 @@ def _measured(basis: ModalBasis, variant: Variant, timed: Timed) -> dict[str, An
     }
 
 
-def _first_steps(setup: Setup, basis: ModalBasis, reference: ReferenceSolution) -> None:
+def first_steps(setup: Setup, basis: ModalBasis, reference: Reference) -> None:
     """They load or compile what the timed ones use."""
     model = setup.candidate.under(basis, reference.case)
     _run(model, reference.t[:2], reference.case.x0, setup.integrator)
