@@ -11,12 +11,13 @@ INSTALLED := $(VENV)/.installed
 export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
 export MLFLOW_DISABLE_TELEMETRY := true
 
-.PHONY: help install reproduce reproduce-full report smoke lint check test coverage audit reference docs ui benchmark browser postgresql slurm compiler clean
+.PHONY: help install reproduce reproduce-full crossover report smoke lint check test coverage audit reference docs ui benchmark browser postgresql slurm compiler clean
 
 help:
 	@echo "make install      the environment alone, in .venv"
 	@echo "make reproduce    the whole default study, results/report.html   (CORES=2)"
 	@echo "make reproduce-full  every baseline timed on every simulation: hours, results-full/report.html"
+	@echo "make crossover    where a network pays: results/tables/crossover.csv and its figure, a quarter of an hour"
 	@echo "make report       results/report.html anew, of what is there"
 	@echo "make ui           the page on which runs are compared, on this machine only   (PORT=5000)"
 	@echo "make benchmark    speed, as ratios, in results/tables/benchmarks.csv"
@@ -50,6 +51,9 @@ reproduce-full: $(INSTALLED)
 	snakemake --cores $(CORES) $(SNAKEMAKE_OPTIONS) --configfile config/presets/full.yaml
 	snakemake --cores $(CORES) $(SNAKEMAKE_OPTIONS) --configfile config/presets/full.yaml \
 		--report results-full/report.html
+
+crossover: $(INSTALLED)
+	snakemake --cores $(CORES) $(SNAKEMAKE_OPTIONS) --configfile config/presets/crossover.yaml
 
 report: $(INSTALLED)
 	snakemake --cores $(CORES) $(SNAKEMAKE_OPTIONS) --report results/report.html

@@ -18,6 +18,7 @@ from pydantic.fields import FieldInfo
 from flexsurr.config.aerodynamics import FeatureLimits
 from flexsurr.config.aircraft import Aircraft
 from flexsurr.config.files import FilesStudy
+from flexsurr.config.modes_study import ModesStudy
 from flexsurr.config.sample_study import SampleStudy
 from flexsurr.config.schema import Record
 from flexsurr.config.settings import Settings
@@ -58,7 +59,7 @@ PAGES = (
         "config/studies/*.yaml",
         "Which keys there are depends on `source`; without it the data are simulated trajectories. A study "
         "that differs from another in a few values gives these alone, and the other's name as `based_on`.",
-        (Study, SampleStudy, FilesStudy),
+        (Study, SampleStudy, FilesStudy, ModesStudy),
     ),
     Page("config/structures/*.yaml", "", (Structure,)),
     Page(

@@ -8,6 +8,7 @@ from flexsurr.config.aerodynamics import FeatureLimits
 from flexsurr.config.aircraft import SURFACES, Aircraft
 from flexsurr.config.files import FilesStudy
 from flexsurr.config.flight import CONTROL_NAMES
+from flexsurr.config.modes_study import ModesStudy
 from flexsurr.config.own_network import own_network
 from flexsurr.config.sample_study import SampleStudy
 from flexsurr.config.structure import Structure
@@ -53,7 +54,24 @@ class ResolvedFiles:
     root: Path
 
 
-AnyStudy = ResolvedStudy | ResolvedSampleStudy | ResolvedFiles
+@dataclass(frozen=True)
+class ResolvedModesStudy:
+    """A study of several numbers of modes with everything its file refers to."""
+
+    name: str
+    study: ModesStudy
+    structure: Structure
+    sweeps: Mapping[str, Sweep]
+    own_networks: Mapping[str, str]
+
+    def of(self, modes: int) -> ResolvedStudy:
+        """The study of trajectories that one number of modes makes."""
+        study = self.study.of(modes)
+        sweeps = {name: self.sweeps[name] for name in study.sweeps}
+        return ResolvedStudy(self.name, study, self.structure, sweeps, own_networks=self.own_networks)
+
+
+AnyStudy = ResolvedStudy | ResolvedSampleStudy | ResolvedFiles | ResolvedModesStudy
 
 
 def _trajectories(files: StudyFiles) -> ResolvedStudy:
@@ -61,13 +79,7 @@ def _trajectories(files: StudyFiles) -> ResolvedStudy:
     structure = files.named(Structure, study.structure, "structure")
     others = [files.named(Structure, path, "frequencies_also_of") for path in study.frequencies_also_of]
     sweeps, own_networks = _field_sweeps(files, study.sweeps)
-    modes, most = study.reduction.modes, structure.coordinates
-    if modes > most:
-        files.refuse(
-            f"{modes} is not allowed; allowed: 1 to {most}, the coordinates of {study.structure}",
-            "reduction",
-            "modes",
-        )
+    _check_modes(files, study.reduction.modes, structure, study.structure, "reduction", "modes")
     try:
         study.evaluation.load.check(structure)
         load = study.evaluation.load.with_tables(files.root)
@@ -76,6 +88,23 @@ def _trajectories(files: StudyFiles) -> ResolvedStudy:
     evaluation = study.evaluation.model_copy(update={"load": load})
     study = study.model_copy(update={"evaluation": evaluation})
     return ResolvedStudy(files.name, study, structure, sweeps, tuple(others), own_networks)
+
+
+def _check_modes(files: StudyFiles, modes: int, structure: Structure, path: str, *key: str) -> None:
+    most = structure.coordinates
+    if modes > most:
+        files.refuse(f"{modes} is not allowed; allowed: 1 to {most}, the coordinates of {path}", *key)
+
+
+def _modes(files: StudyFiles) -> ResolvedModesStudy:
+    study = files.record(ModesStudy)
+    structure = files.named(Structure, study.structure, "structure")
+    sweeps, own_networks = _field_sweeps(files, study.sweeps)
+    _check_modes(files, max(study.modes), structure, study.structure, "modes")
+    for name, sweep in sweeps.items():
+        if any(("configurations",) not in space.dimensions() for space in sweep.spaces):
+            files.refuse(f"{study.sweeps[name]!r} has a space without configurations", "sweeps", name)
+    return ResolvedModesStudy(files.name, study, structure, sweeps, own_networks)
 
 
 def _samples(files: StudyFiles) -> ResolvedSampleStudy:
@@ -128,6 +157,7 @@ SOURCES: dict[str, Callable[[StudyFiles], AnyStudy]] = {
     "trajectories": _trajectories,
     "samples": _samples,
     "files": _files,
+    "modes": _modes,
 }
 """What a study's `source` may be; without one it is "trajectories"."""
 

@@ -130,10 +130,10 @@ def measurements(
     )
     models = [*candidates(basis, variant, surrogates, with_torch=True), *learned]
     timed = setups(models, settings.integrators)
-    return measured(timed, settings, basis, variant, references, f"{variant} {response}")
+    return measured_all(timed, settings, basis, variant, references, f"{variant} {response}")
 
 
-def measured(
+def measured_all(
     setups: Iterable[Setup],
     settings: EvaluationSettings,
     basis: ModalBasis,
@@ -220,7 +220,7 @@ def _measured(basis: ModalBasis, variant: Variant, timed: Timed) -> dict[str, An
     }
 
 
-def first_steps(setup: Setup, basis: ModalBasis, reference: Reference) -> None:
+def first_steps(setup: Setup, basis: ModalBasis, reference: ReferenceSolution) -> None:
     """They load or compile what the timed ones use."""
     model = setup.candidate.under(basis, reference.case)
     _run(model, reference.t[:2], reference.case.x0, setup.integrator)

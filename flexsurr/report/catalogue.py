@@ -60,6 +60,7 @@ def damped(structure: Structure) -> bool:
 SIMULATED = ("trajectories",)
 FILES = ("files",)
 SAMPLES = ("samples",)
+MODES = ("modes",)
 OF_FIELDS = (*SIMULATED, *FILES)
 EVERY_SOURCE = (*OF_FIELDS, *SAMPLES)
 
@@ -129,6 +130,7 @@ FIGURES: dict[str, Product] = {
     "rudder_doublet": Product("Rudder doublet", ("doublets", "doublet", "elastic_modes"), sources=SAMPLES),
     "elastic_modes": Product("Elastic modes", ("free_modes", "elastic_modes"), sources=SAMPLES),
     "coefficient_errors": Product("Error against each input", ("errors",), sources=SAMPLES),
+    "crossover": Product("Which surrogate stands for how many modes", ("rivals-*",), sources=MODES),
 }
 
 TABLES: dict[str, Product] = {
@@ -152,4 +154,5 @@ TABLES: dict[str, Product] = {
     ),
     "airliner_cost": Product("Cost of ninety flights", ("flight_cost",), sources=SAMPLES),
     "airliner_limits": Product("States beyond the network's limits", ("limits",), sources=SAMPLES),
+    "crossover": Product("What stands for how many modes", ("rivals-*",), sources=MODES),
 }

@@ -16,6 +16,7 @@ from flexsurr.report.airliner_geometry_figures import elastic_modes, figure_16, 
 from flexsurr.report.architecture_figures import architecture_errors
 from flexsurr.report.beam_figures import figure_08, figure_09, reduced_against_full, static_deflection
 from flexsurr.report.cost_figures import cost_accuracy
+from flexsurr.report.crossover_figure import crossover
 from flexsurr.report.energy_figures import energy_decay, energy_drift, figure_13
 from flexsurr.report.kinematic_figures import figure_03, figure_04
 from flexsurr.report.pareto_figures import pareto
@@ -76,5 +77,6 @@ DRAW: dict[str, Callable[..., Figure]] = {
         rudder_doublet,
         elastic_modes,
         coefficient_errors,
+        crossover,
     )
 }

@@ -9,6 +9,7 @@ from flexsurr.config.trial import FIELDS, MAPS, dimensions
 from flexsurr.evaluation.columns import (
     ACCURACY_COLUMNS,
     COST_COLUMNS,
+    CROSSOVER_COLUMNS,
     FREQUENCY_COLUMNS,
     MODE_COLUMNS,
     STATIC_COLUMNS,
@@ -153,6 +154,15 @@ def airliner_modes(modes: pd.DataFrame) -> pd.DataFrame:
     return _columns(modes, MODE_COLUMNS)
 
 
+def crossover(rivals: pd.DataFrame) -> pd.DataFrame:
+    """crossover.csv: for each number of modes the reduced model, then its rivals, the cheapest first."""
+    frame = _columns(rivals, CROSSOVER_COLUMNS)
+    is_rival = frame["model"] != "rom"
+    return frame.assign(is_rival=is_rival).sort_values(["modes", "is_rival", "wall_s"], ignore_index=True)[
+        list(CROSSOVER_COLUMNS)
+    ]
+
+
 def as_it_is(frame: pd.DataFrame) -> pd.DataFrame:
     """The whole of what an evaluation wrote."""
     return frame
@@ -173,6 +183,7 @@ TABULATE: dict[str, Callable[..., pd.DataFrame]] = {
         rollout_cost,
         airliner_accuracy,
         airliner_modes,
+        crossover,
     )
 } | dict.fromkeys(
     ("airliner_elastic_modes", "airliner_left_out_modes", "airliner_cost", "airliner_limits"), as_it_is

@@ -9,15 +9,16 @@ from pathlib import Path
 from flexsurr.config.errors import ConfigurationError
 from flexsurr.config.load import turns_clamp
 from flexsurr.config.settings import Configuration
-from flexsurr.config.sources import AnyStudy, ResolvedSampleStudy, ResolvedStudy
+from flexsurr.config.sources import AnyStudy, ResolvedModesStudy, ResolvedSampleStudy, ResolvedStudy
 from flexsurr.report.catalogue import FIGURES, OF_AIRCRAFT, TABLES, Product
 from flexsurr.workflow.batches import batch_of_shard, batches_of_runs, shards_of_batch
 from flexsurr.workflow.files_plan import FilesPlan
+from flexsurr.workflow.modes_plan import ModesPlan
 from flexsurr.workflow.sample_plan import SamplePlan
 from flexsurr.workflow.study_plan import Job, Run
 from flexsurr.workflow.trajectory_plan import TrajectoryPlan
 
-AnyPlan = TrajectoryPlan | FilesPlan | SamplePlan
+AnyPlan = TrajectoryPlan | FilesPlan | SamplePlan | ModesPlan
 
 FIT = "fit.json"
 """The file of a run that says that it has been trained."""
@@ -28,9 +29,11 @@ OF_RUNS = {"metrics": "metrics.json", "history": "history.parquet"}
 
 def _plan_of(study: AnyStudy) -> AnyPlan:
     match study:
-        case ResolvedStudy():
+        case ResolvedStudy() | ResolvedModesStudy():
             if not study.structure.plain:
                 _check(study)
+            if isinstance(study, ResolvedModesStudy):
+                return ModesPlan(study)
             if turns_clamp(study.study.evaluation.load):
                 _check_load(study)
             return TrajectoryPlan(study)
@@ -39,7 +42,7 @@ def _plan_of(study: AnyStudy) -> AnyPlan:
     return FilesPlan(study)
 
 
-def _check(study: ResolvedStudy) -> None:
+def _check(study: ResolvedStudy | ResolvedModesStudy) -> None:
     # imported here, for the beam brings SciPy and numba, which a plan does not need
     from flexsurr.beam.soundness import check_structure
 
@@ -133,7 +136,7 @@ class Plan:
     def shards(self, study: str, data: str, batch: str) -> Job:
         """The shards of one batch, by their files."""
         of = self.studies[study]
-        assert not isinstance(of, FilesPlan)  # whose files make one shard
+        assert not isinstance(of, FilesPlan | ModesPlan)  # which have one shard, and none
         return {
             "shards": {
                 of.shard_file(data, number): of.simulate(data, number)

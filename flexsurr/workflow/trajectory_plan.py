@@ -132,7 +132,7 @@ class TrajectoryPlan(FieldPlan):
 
     def configurations(self, data: str) -> Job:
         """What stands in the place of a dataset: a structure, and ranges of its configurations."""
-        return {**self._part(()), "part": values_of(self._settings(data), SAMPLED)}
+        return {**self.part(()), "part": values_of(self._settings(data), SAMPLED)}
 
     def ranges(self, data: str) -> str:
         """A hash of it, the same for what was so before."""
@@ -140,32 +140,32 @@ class TrajectoryPlan(FieldPlan):
 
     def score(self, key: str) -> Job:
         """Held-out errors and long responses of one run."""
-        return {**self._part(SCORE), "variant": self.runs[key].variant}
+        return {**self.part(SCORE), "variant": self.runs[key].variant}
 
     def statics(self) -> Job:
         """Static deflection and natural frequencies."""
         also = [structure.model_dump(mode="json") for structure in self.resolved.frequencies_also_of]
-        return {**self._part(STATICS), "frequencies_also_of": also}
+        return {**self.part(STATICS), "frequencies_also_of": also}
 
     def validation(self) -> Job:
         """The reduced model against the full one."""
-        return self._part(VALIDATION)
+        return self.part(VALIDATION)
 
     def respond(self, variant: str) -> Job:
         """Responses and energies of the selected surrogates."""
-        return {**self._part(RESPONSES), "variant": variant}
+        return {**self.part(RESPONSES), "variant": variant}
 
     def watch(self, variant: str) -> Job:
         """The free response of the selected surrogates, moving."""
-        return {**self._part(WATCH), "study": self.name, "variant": variant}
+        return {**self.part(WATCH), "study": self.name, "variant": variant}
 
     def cost(self, variant: str, response: str) -> Job:
         """Wall times and errors of everything, under one response."""
-        return {**self._part(COST), "study": self.name, "variant": variant, "response": response}
+        return {**self.part(COST), "study": self.name, "variant": variant, "response": response}
 
     def learn_load(self, variant: str) -> Job:
         """The study's load, learned from configurations of one variant."""
-        return {**self._part(LEARNED_LOAD), "study": self.name, "variant": variant}
+        return {**self.part(LEARNED_LOAD), "study": self.name, "variant": variant}
 
     def load_data(self, variant: str) -> str:
         """The folder of the dataset that the load is learned from."""
@@ -204,7 +204,8 @@ class TrajectoryPlan(FieldPlan):
     def _structure(self) -> Job:
         return {"structure": self.resolved.structure.model_dump(mode="json")}
 
-    def _part(self, keys: tuple[str, ...]) -> Job:
+    def part(self, keys: tuple[str, ...]) -> Job:
+        """The structure, and the values of `keys` of the study."""
         return {**self._structure(), "part": values_of(self.resolved.study, keys)}
 
     def _dataset(self, data: str) -> Job:

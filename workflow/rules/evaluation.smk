@@ -87,6 +87,36 @@ rule evaluate:
         " --runs {params.runs:q} --loads {input.loads:q} --output {output:q} > {log:q} 2>&1"
 
 
+rule rivals:
+    # It measures time, so it asks for every core: nothing else runs beside it.
+    input:
+        lambda w: needed(
+            f"runs/{key}/metrics.json"
+            for key in plan.job("rivals", w.study, w.modes)["runs"]
+        ),
+    output:
+        f"{RESULTS}/evaluation/{{study}}/rivals-{{modes}}.parquet",
+    log:
+        f"{RESULTS}/logs/rivals/{{study}}-{{modes}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/rivals/{{study}}-{{modes}}.tsv"
+    wildcard_constraints:
+        modes=r"\d+",
+    threads: timing_cores
+    resources:
+        mem_mb=2000,
+        runtime=240,
+    params:
+        job=job("rivals", "study", "modes"),
+        code=code("rivals"),
+        runs=f"{RESULTS}/runs",
+    message:
+        "timing what stands for {wildcards.modes} modes of {wildcards.study}"
+    shell:
+        "python -m flexsurr rivals --job {params.job:q} --runs {params.runs:q}"
+        " --output {output:q} > {log:q} 2>&1"
+
+
 rule rollouts:
     input:
         selection=f"{RESULTS}/selected/{{study}}.json",

@@ -3,7 +3,7 @@
 from flexsurr.workflow.progress import Progress, Teller, earlier_means
 
 # Their jobs take every core, unless the configuration says otherwise.
-TIMED = ("evaluate", "rollout_cost", "fly_randomly")
+TIMED = ("evaluate", "rivals", "rollout_cost", "fly_randomly")
 
 
 def progress():
