@@ -27,14 +27,17 @@ def mirrors(basis: ModalBasis) -> Array:
     """(k, r) signs of the modal coordinates in each plane of symmetry; k is 0 to 2.
 
     A plane counts where every mode is its own image but for the sign, and the law holds at configurations
-    drawn at random.
+    drawn at random; and where it says more than nothing, and more than the plane before.
     """
     kinds = np.repeat(basis.structure.ordered_joints, basis.structure.elements)
-    found = []
+    found: list[Array] = []
     for plane in PLANES:
         of_joints = np.where(np.isin(kinds, list(plane)), -1.0, 1.0)
         signs = _signs_of_modes(basis.modes, of_joints)
-        if signs is not None and _holds(basis, signs):
+        known = [np.ones(basis.modes.shape[1]), *found]
+        if signs is None or any(np.array_equal(signs, other) for other in known):
+            continue
+        if _holds(basis, signs):
             found.append(signs)
     return np.array(found).reshape(-1, basis.modes.shape[1])
 

@@ -1,6 +1,6 @@
 """A study of one structure with more and more modes: which surrogate stands for how many (source: modes)."""
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, field_validator, model_validator
 
@@ -17,6 +17,7 @@ from flexsurr.config.study import (
     Reduction,
     Study,
     check_steps,
+    left_out,
 )
 
 
@@ -55,7 +56,7 @@ class ModesStudy(Learning):
     """Numbers of modes r: every run is trained for each of them."""
     trained_for: dict[str, tuple[Count, ...]] = Field(default_factory=dict)
     """For a sweep, but not for the one called default, those of `modes` that it is trained for. Others are
-    trained for all.
+    trained for all, as is one that is set to null.
     """
     normalisation: Literal["unit", "mass"] = "mass"
     """What each mode is scaled to: Euclidean norm 1, or modal mass 1."""
@@ -63,6 +64,11 @@ class ModesStudy(Learning):
     """Where responses start."""
     evaluation: ModesEvaluation = ModesEvaluation()
     """Responses by which models are timed and judged."""
+
+    @field_validator("trained_for", mode="before")
+    @classmethod
+    def _left_out_sweeps_too(cls, value: Any) -> Any:
+        return left_out(value)
 
     @field_validator("modes")
     @classmethod

@@ -307,7 +307,7 @@ class Learning(Record):
     @field_validator("sweeps", mode="before")
     @classmethod
     def _left_out_sweeps(cls, value: Any) -> Any:
-        return _left_out(value)
+        return left_out(value)
 
     @model_validator(mode="after")
     def _one_sweep_is_the_default(self) -> Self:
@@ -317,7 +317,7 @@ class Learning(Record):
         return self
 
 
-def _left_out(value: Any) -> Any:
+def left_out(value: Any) -> Any:
     """What another file names and this one sets to null is left out."""
     if not isinstance(value, Mapping):
         return value
@@ -359,7 +359,7 @@ class Study(Learning):
     @field_validator("further_datasets", "trains_on", mode="before")
     @classmethod
     def _left_out_datasets(cls, value: Any) -> Any:
-        return _left_out(value)
+        return left_out(value)
 
     @model_validator(mode="after")
     def _names_are_plain(self) -> Self:

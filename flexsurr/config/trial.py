@@ -147,12 +147,22 @@ class PortHamiltonianNetwork(TrainedField):
     """polynomial: the potential is one, found by least squares, which knows weight and any equilibrium, as a
     structure under gravity needs. None: ½ qᵀKq.
     """
-    mass_matrix: Literal["factored", "entries"] = Field(
+    mass_matrix: Literal["factored", "entries", "mirrored"] = Field(
         default="factored", exclude_if=lambda value: value == "factored"
     )
     """What the network gives. factored: the factor of a mass matrix that is positive definite everywhere.
-    entries: the matrix itself, which it learns in less time and far more accurately.
+    entries: the matrix itself, which it learns in less time and far more accurately. mirrored, with
+    configurations alone: the matrix, by neurons that come with their mirror images in the structure's planes
+    of symmetry, which it then has exactly; `hidden` counts them without their images.
     """
+
+    @model_validator(mode="after")
+    def _mirrors_are_those_of_a_structure(self) -> Self:
+        if self.mass_matrix == "mirrored" and self.configurations is None:
+            raise ValueError(
+                "mass_matrix: 'mirrored' is not allowed without configurations; allowed: factored, entries"
+            )
+        return self
 
     optimisers = ("levenberg_marquardt",)
 

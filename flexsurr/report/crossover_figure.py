@@ -123,6 +123,8 @@ def _panel(ax: Axes, rows: pd.DataFrame) -> None:
 
 def _against_modes(ax: Axes, best: pd.DataFrame, modes: list[int]) -> None:
     logarithmic(ax, y=True)
+    costs = np.array([*best["relative_to_compiled_percent"], 100.0])
+    ax.set_ylim(costs.min() / 2.0, costs.max() * 2.0)
     ax.axhline(100.0, color="#555555", linewidth=0.8, zorder=1)
     for family, (shade, marker) in FAMILIES.items():
         of_family = best[best["family"] == family].set_index("modes")["relative_to_compiled_percent"]
@@ -132,8 +134,6 @@ def _against_modes(ax: Axes, best: pd.DataFrame, modes: list[int]) -> None:
     ax.set_xlabel("modes r [–]")
     ax.set_ylabel("cost [% of the compiled reduced model]")
     ax.set_xticks(modes)
-    costs = np.array([*best["relative_to_compiled_percent"], 100.0])
-    ax.set_ylim(costs.min() / 2.0, costs.max() * 2.0)
 
 
 def _legend(figure: Figure) -> None:

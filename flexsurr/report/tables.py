@@ -27,6 +27,7 @@ TRAINING_COLUMNS = (
     "hidden",
     "activation",
     "degree",
+    "terms",
     "options",
     "scaling",
     "samples_per_trajectory",

@@ -1,6 +1,6 @@
 """Port-Hamiltonian surrogate whose mass matrix is F + E(q) or F + L(q) L(q)ᵀ, E or L from a network."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,7 +10,8 @@ from flexsurr.simulation.linear_solvers import invert_packed, solve_packed
 from flexsurr.simulation.rhs import Array, implements_rhs
 from flexsurr.surrogates.activations import ActivationFunction, activation_function, curvature, slope, value
 from flexsurr.surrogates.layers import Dense, Shapes, forward, layer_shapes, offset, read, size_of, views
-from flexsurr.surrogates.packed import lower, pack, packed_size, symmetric
+from flexsurr.surrogates.mirrored_mass import Images, MirroredNetworkKernel
+from flexsurr.surrogates.packed import lower, pack, packed_size, rows_and_columns, symmetric
 from flexsurr.surrogates.port_hamiltonian import PortHamiltonian, jacobian_of_motion, springs_and_dampers
 
 
@@ -24,6 +25,9 @@ class NetworkPortHamiltonian(PortHamiltonian):
     accurate, for the entries of a mass matrix are smoother functions of q than those of its factor; but
     nothing binds it to be positive definite where it was not trained. `parameters`: weights (inputs, n),
     biases (n,), R (entries, n), Λ (entries,), the factors of K̂ and Ĉ.
+
+    With `mirrors` (k, r), planes of symmetry by the signs of the coordinates, the n neurons are n / 2ᵏ with
+    all of their images beside them, as `Images.of_neurons` makes them, and M has those symmetries.
     """
 
     floor: Array
@@ -31,6 +35,7 @@ class NetworkPortHamiltonian(PortHamiltonian):
     hidden: tuple[int, ...]
     activation: str
     factored: bool = True
+    mirrors: Array | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         if len(self.hidden) != 1 or self.hidden[0] < 1:
@@ -118,6 +123,8 @@ class NetworkPortHamiltonian(PortHamiltonian):
         roots = np.sqrt(of_p / of_rates)
         of_entries = roots[rows] if self.factored else roots[rows] * roots[columns]
         of_inputs, _ = self.inputs(of_q)
+        if self.mirrors is not None:
+            return self._mirrored_kernel(self.mirrors, roots)
         layer = np.concatenate([(weights / of_inputs[:, None]).ravel(), biases])
         kernel = NetworkPortHamiltonianKernel(
             self.sigma.tag,
@@ -134,6 +141,28 @@ class NetworkPortHamiltonian(PortHamiltonian):
         # of the right-hand side 3 (n + entries + r); its Jacobian needs more
         return kernel, (5 + r) * n + 4 * entries + r + 4 * r * r
 
+    def _mirrored_kernel(self, mirrors: Array, roots: Array) -> tuple[NamedTuple, int]:
+        """The same of neurons with their images, which are read together; `roots` (r,) are those of S."""
+        images = Images.of(mirrors)
+        weights, biases, readout, constant, *_ = self.arrays()
+        neurons = self.hidden[0]
+        h = neurons // images.count
+        _, of_q, *_ = self.scales()
+        rows, columns = rows_and_columns(self.pairs)
+        of_entries = roots[rows] * roots[columns]
+        kernel = MirroredNetworkKernel(
+            self.sigma.tag,
+            np.concatenate([(weights[:, :h] / of_q[:, None]).ravel(), biases[:h]]),
+            (readout[:, :h] * of_entries[:, None]).ravel(),
+            (constant + self.floor) * of_entries,
+            np.ascontiguousarray(self.stiffness).ravel(),
+            np.ascontiguousarray(self.damping).ravel(),
+            (h * images.of_coordinates).astype(np.uint64),
+            (h * images.of_entries).astype(np.uint64),
+            neurons,
+        )
+        return kernel, 3 * neurons + self.packed_size + self.pairs
+
     def settings(self) -> dict[str, Any]:
         """Hidden layer, activation, parity and what the network gives; the floor is saved as an array."""
         return {
@@ -144,8 +173,9 @@ class NetworkPortHamiltonian(PortHamiltonian):
         }
 
     def arrays_to_keep(self) -> dict[str, np.ndarray]:
-        """Weights and floor."""
-        return {**super().arrays_to_keep(), "floor": self.floor}
+        """Weights and floor, and mirrors if there are any."""
+        kept = {**super().arrays_to_keep(), "floor": self.floor}
+        return kept if self.mirrors is None else kept | {"mirrors": self.mirrors}
 
 
 class NetworkPortHamiltonianKernel(NamedTuple):

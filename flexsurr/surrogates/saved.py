@@ -165,6 +165,7 @@ def _surrogate(header: dict[str, Any], arrays: dict[str, np.ndarray]) -> Surroga
     if architecture == NetworkPortHamiltonian.architecture:
         common["potential"] = Potential.kept(arrays)
         common |= {key: bool(header[key]) for key in ("even", "factored") if key in header}
+        common["mirrors"] = arrays.get("mirrors")
         return NetworkPortHamiltonian(**common, floor=arrays["floor"])
     if architecture == EvenHNN.architecture:
         return EvenHNN(**common)

@@ -34,6 +34,7 @@ from flexsurr.surrogates import (
     min_max_scaling,
 )
 from flexsurr.training.adam import Adam
+from flexsurr.training.configuration_samples import ConfigurationSamples
 from flexsurr.training.dataset import Dataset, SampleSource
 from flexsurr.training.epochs import Ending, Fit, Loss, Optimiser, Progress, Report, train
 from flexsurr.training.even_hnn_training import EvenHNNObjective, untrained_even_hnn
@@ -54,6 +55,7 @@ from flexsurr.training.port_hamiltonian_training import (
     InverseThenForward,
     PortHamiltonianObjective,
     untrained_entries,
+    untrained_mirrored,
     untrained_port_hamiltonian,
 )
 
@@ -131,8 +133,12 @@ def _begun(trial: Iterative, dataset: Dataset) -> tuple[Surrogate, Loss, Loss, O
     validation = dataset.x_validation, dataset.dx_validation
     if isinstance(trial, PortHamiltonianNetwork):
         what = dataset, trial.hidden, trial.activation, trial.seed, trial.potential == "polynomial"
-        if trial.mass_matrix == "entries":
-            entries, mass = untrained_entries(*what)
+        if trial.mass_matrix != "factored":
+            if trial.mass_matrix == "mirrored":
+                assert isinstance(dataset, ConfigurationSamples)  # as configuration has seen to
+                entries, mass = untrained_mirrored(dataset, *what[1:])
+            else:
+                entries, mass = untrained_entries(*what)
             optimiser = EntriesOptimiser(entries, training[0][:, : entries.pairs] / entries.scales()[1], mass)
             return entries, FieldLoss(entries, *training), FieldLoss(entries, *validation), optimiser
         port = untrained_port_hamiltonian(*what)

@@ -16,6 +16,7 @@ from flexsurr.simulation.rhs import Array
 from flexsurr.storage import Scales
 from flexsurr.surrogates import NetworkPortHamiltonian, PolynomialPortHamiltonian
 from flexsurr.surrogates.layers import layer_shapes, views
+from flexsurr.surrogates.mirrored_mass import Images
 from flexsurr.surrogates.packed import pack, packed_size, semidefinite_factor, symmetric
 from flexsurr.training.configuration_samples import ConfigurationSamples
 from flexsurr.training.dataset import Dataset
@@ -29,6 +30,7 @@ from flexsurr.training.levenberg_marquardt import (
     second_difference,
 )
 from flexsurr.training.losses import nmse, output_weights, spreads
+from flexsurr.training.mirrored_layer import MirroredLayer
 from flexsurr.training.one_hidden_layer import OneHiddenLayer
 from flexsurr.training.port_hamiltonian_rows import residuals_and_jacobian
 
@@ -136,6 +138,34 @@ def untrained_entries(
     return replace(network, factored=False, parameters=parameters), mass
 
 
+def untrained_mirrored(
+    samples: ConfigurationSamples,
+    hidden: tuple[int, ...],
+    activation: str,
+    seed: int,
+    potential: bool = False,
+) -> tuple[NetworkPortHamiltonian, Array]:
+    """The same with `hidden` neurons that come with their mirror images in the planes of the samples."""
+    network, mass = untrained_entries(samples, hidden, activation, seed, potential)
+    *_, springs, dampers = network.arrays()
+    images = Images.of(samples.mirrors)
+    shape = network.pairs, hidden[0], network.packed_size
+    weights, biases, readout, constants = views(
+        initial_weights(*shape, seed, spread=1.0), layer_shapes(shape)
+    )
+    layers = [*images.of_neurons(weights, biases, readout), constants]
+    mirrored = replace(
+        network,
+        parameters=_as_surrogate(layers, springs, dampers),
+        # what changes its sign has no mean, though that of so many samples is not 0
+        floor=np.where(images.of_entries == 0, network.floor, 0.0),
+        even=False,
+        hidden=(images.count * hidden[0],),
+        mirrors=samples.mirrors,
+    )
+    return mirrored, mass
+
+
 def _as_surrogate(layers: list[Array], springs: Array, dampers: Array) -> Array:
     """The parameters of the surrogate, which has the readout of a map the other way round."""
     weights, biases, readout, constants = layers
@@ -221,12 +251,18 @@ class EntriesOptimiser:
         weights, biases, readout, constants, *self._others = network.arrays()
         inputs, _ = network.inputs(q)
         target = pack(mass) - network.floor
-        hidden, entries = network.hidden[0], network.packed_size
-        self._shapes = layer_shapes((len(weights), hidden, entries))
-        start = np.concatenate([part.ravel() for part in (weights, biases, readout.T, constants)])
+        entries, activation = network.packed_size, network.activation
         of_entries = 1.0 / (entries * spreads(target)[0] ** 2)
-        objective = OneHiddenLayer.of_map(inputs, target, hidden, network.activation, of_entries)
-        self._method = LevenbergMarquardt(objective, start)
+        self._images = None if network.mirrors is None else Images.of(network.mirrors)
+        hidden = network.hidden[0] // (1 if self._images is None else self._images.count)
+        self._shapes = layer_shapes((len(weights), hidden, entries))
+        own = weights[:, :hidden], biases[:hidden], readout[:, :hidden].T, constants
+        objective: OneHiddenLayer | MirroredLayer
+        if self._images is None:
+            objective = OneHiddenLayer.of_map(inputs, target, hidden, activation, of_entries)
+        else:
+            objective = MirroredLayer(inputs, target, hidden, activation, self._images, of_entries)
+        self._method = LevenbergMarquardt(objective, np.concatenate([part.ravel() for part in own]))
 
     @property
     def finished(self) -> str:
@@ -236,7 +272,10 @@ class EntriesOptimiser:
     @property
     def parameters(self) -> Array:
         """Those of the surrogate (n,)."""
-        return _as_surrogate(views(self._method.parameters, self._shapes), *self._others)
+        *layers, constants = views(self._method.parameters, self._shapes)
+        if self._images is not None:
+            layers = [*self._images.of_neurons(*layers)]
+        return _as_surrogate([*layers, constants], *self._others)
 
     def epoch(self) -> float:
         """One accepted step; the loss of the entries after it."""

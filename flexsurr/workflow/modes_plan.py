@@ -14,6 +14,7 @@ RIVALS = (
     "evaluation.simulations",
     "evaluation.duration_s",
     "evaluation.output_step_s",
+    "evaluation.scipy_simulations",
     "evaluation.repeats",
     "evaluation.reference_integrator",
     "evaluation.integrators",

@@ -5,6 +5,7 @@ from hypothesis import strategies as st
 from structures import ALL_JOINTS, CANTILEVER, basis_of
 
 from flexsurr.beam import draw_initial_conditions, stiffness_matrix
+from flexsurr.beam.initial_conditions import initial_states
 from flexsurr.config.study import InitialConditions
 
 MODAL, JOINT = InitialConditions(kind="modal"), InitialConditions(kind="joint")
@@ -48,6 +49,28 @@ def test_joint_amplitudes_are_projected_with_the_springs():
     stiffness = stiffness_matrix(CANTILEVER)
     # What the projection leaves out does no work on the modes.
     np.testing.assert_allclose((q - projected @ few.modes.T) @ stiffness @ few.modes, 0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize("normalisation", ["unit", "mass"])
+@pytest.mark.parametrize(("higher_modes", "exponent"), [("as_energetic", 0), ("as_forced", 2)])
+def test_higher_modes_have_their_share_of_the_energy(normalisation, higher_modes, exponent):
+    """Where every coordinate, or momentum, is at the end of its range; the first mode's range is as given."""
+    basis = basis_of(ALL_JOINTS.model_copy(update={"gravity_m_s2": 0.0}), 4, normalisation)
+    ranges = InitialConditions(q_max_deg=5.0, p_max_kg_m2_s=0.3, higher_modes=higher_modes)
+    alike = initial_states(basis, InitialConditions(q_max_deg=5.0, p_max_kg_m2_s=0.3), np.ones((1, 8)))
+    (state,) = initial_states(basis, ranges, np.ones((1, 8)))
+    eta, p = np.split(state, 2)
+    np.testing.assert_allclose(state[[0, 4]], alike[0, [0, 4]])
+    springs = np.diag(basis.stiffness)
+    shares = (basis.omega_rad_s[0] / basis.omega_rad_s) ** exponent
+    np.testing.assert_allclose(springs * eta**2, springs[0] * eta[0] ** 2 * shares)
+    masses = springs / basis.omega_rad_s**2
+    np.testing.assert_allclose(p**2 / masses, p[0] ** 2 / masses[0] * shares)
+
+
+def test_joints_are_drawn_alike():
+    with pytest.raises(ValueError, match="'as_forced' is not allowed with kind: joint; allowed: alike"):
+        InitialConditions(kind="joint", higher_modes="as_forced")
 
 
 def test_negative_numbers_are_refused():

@@ -12,7 +12,7 @@ CONTRACT = {
     "static_tip": "load_N, x_exact_m, z_exact_m, x_fom_m, z_fom_m, x_rom_m, z_rom_m",
     "natural_frequencies": "structure, mode, fom_rad_s, rom_rad_s, published_fom_rad_s, published_rom_rad_s",
     "training": "study, variant, run_id, architecture, configurations, hidden, activation, degree, "
-    "options, scaling, samples_per_trajectory, potential, mass_matrix, optimiser, learning_rate, "
+    "terms, options, scaling, samples_per_trajectory, potential, mass_matrix, optimiser, learning_rate, "
     "weight_decay, batch_size, precision, device, loss, keep, patience, time_limit_s, give_up, seed, "
     "dataset, status, reason, epoch_limit, epochs, best_epoch, "
     "wall_s, processor_s, parameters, final_loss, train_nmse, validation_nmse, best_validation_nmse, "

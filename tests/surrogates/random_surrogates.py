@@ -17,6 +17,7 @@ from flexsurr.surrogates import (
     PolynomialPortHamiltonian,
     Scaling,
 )
+from flexsurr.surrogates.mirrored_mass import Images
 from flexsurr.surrogates.monomials import Exponents, monomials_to_degree
 from flexsurr.surrogates.packed import pack, packed_size
 
@@ -110,6 +111,47 @@ def port_network(
     )
 
 
+PLANES = np.array([[1.0, -1.0, -1.0], [-1.0, 1.0, -1.0]])
+"""Two planes of symmetry of three coordinates, as bending out of plane, in plane and torsion have them."""
+
+
+def sparse_polynomial(seed: int = 0) -> PolynomialPortHamiltonian:
+    """One of degree 4 with those planes, of whose monomials some are missing in all of M."""
+    whole = port_polynomial(6, 4, even=False, seed=seed)
+    flips = (PLANES < 0.0).astype(int)
+    rows, columns = np.tril_indices(3)
+    of_entries = (flips[:, rows] + flips[:, columns]) % 2
+    fits = np.all((whole.exponents @ flips.T % 2)[None] == of_entries.T[:, None], axis=2)
+    fits &= whole.exponents.max(axis=1) < 4
+    size = fits.size
+    parameters = np.concatenate([whole.parameters[:size] * fits.ravel(), whole.parameters[size:]])
+    return replace(whole, parameters=parameters)
+
+
+def mirrored_network(neurons: int, activation: str, seed: int = 0) -> NetworkPortHamiltonian:
+    """So many neurons with their images in those planes."""
+    generator, images = np.random.default_rng(seed), Images.of(PLANES)
+    weights, biases, readout = images.of_neurons(
+        generator.normal(size=(3, neurons)),
+        generator.normal(size=neurons),
+        0.05 * generator.normal(size=(neurons, 6)),
+    )
+    constants = np.where(images.of_entries == 0, 0.1 * generator.normal(size=6), 0.0)
+    others = 0.1 * generator.normal(size=12)
+    parts = weights, biases, readout.T, constants, others
+    return NetworkPortHamiltonian(
+        np.concatenate([part.ravel() for part in parts]),
+        pair_scaling(6),
+        **states(6),
+        floor=pack(np.eye(3)),
+        even=False,
+        hidden=(4 * neurons,),
+        activation=activation,
+        factored=False,
+        mirrors=PLANES,
+    )
+
+
 PORT_HAMILTONIANS = {
     "one pair": port_polynomial(2, 3, even=False),
     "even": port_polynomial(6, 4, even=True),
@@ -119,5 +161,7 @@ PORT_HAMILTONIANS = {
     "even network": port_network(6, 5, "softplus", even=True),
     "entries": port_network(6, 5, "atan", factored=False),
     "even entries": port_network(6, 5, "tanh", even=True, factored=False),
+    "sparse": sparse_polynomial(),
+    "mirrored": mirrored_network(5, "atan"),
 }
 NETWORKS = {"hnn": HNN, "mlp": MLP, "dissipative_hnn": DissipativeHNN}

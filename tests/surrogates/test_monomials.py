@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from flexsurr.surrogates.monomials import (
+    closed,
     differentiate,
     evaluate_monomials,
     factors,
@@ -60,6 +61,25 @@ def test_factors_rebuild_a_set_from_itself(parity):
     for parent, factor in zip(*factors(exponents), strict=True):
         values.append(values[parent] * available[factor])
     np.testing.assert_allclose(values, evaluate_monomials(exponents, x), rtol=1e-14)
+
+
+def test_a_closed_set_can_be_built_and_holds_few_more():
+    wanted = np.array([[0, 0, 5], [4, 2, 0], [1, 1, 1]])
+    found = closed(wanted)
+    factors(found)
+    rows = [tuple(row) for row in found.tolist()]
+    assert {tuple(row) for row in wanted.tolist()} <= set(rows)
+    # besides the constant, what two divisions by their last variables lead to
+    assert rows[1:] == [
+        (0, 0, 1),
+        (1, 0, 0),
+        (2, 0, 0),
+        (0, 0, 3),
+        (1, 1, 1),
+        (4, 0, 0),
+        (0, 0, 5),
+        (4, 2, 0),
+    ]
 
 
 @pytest.mark.parametrize(("parity", "pieces"), [("all", 6 * 5 + 3), ("even", 6 * 3)])

@@ -6,7 +6,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from random_surrogates import PORT_HAMILTONIANS, pair_scaling, port_network, port_polynomial, states
+from random_surrogates import (
+    PLANES,
+    PORT_HAMILTONIANS,
+    pair_scaling,
+    port_network,
+    port_polynomial,
+    states,
+)
 
 from flexsurr.surrogates import FeatureScaling, Hamiltonian, PolynomialPortHamiltonian, compiled
 from flexsurr.surrogates.packed import lower, semidefinite_factor
@@ -142,6 +149,18 @@ def test_the_nearest_semidefinite_matrix(seed):
     factor = lower(semidefinite_factor(matrix), 3)
     nearest = vectors * np.maximum(values, 0.0) @ vectors.T
     np.testing.assert_allclose(factor @ factor.T, nearest, atol=1e-12)
+
+
+@pytest.mark.parametrize("kind", ["sparse", "mirrored"])
+@pytest.mark.parametrize("plane", PLANES, ids=("one plane", "the other"))
+def test_mirrored_motion_is_the_mirror_image_of_motion(kind, plane):
+    """M(S q) = S M(q) S; springs and dampers of these are none's image, so it is said of M alone."""
+    surrogate = PORT_HAMILTONIANS[kind]
+    q = np.random.default_rng(7).uniform(-1.0, 1.0, (5, 3))
+    image = plane[:, None] * surrogate.scaled_mass(q) * plane
+    np.testing.assert_allclose(surrogate.scaled_mass(plane * q), image, rtol=1e-12, atol=1e-14)
+    others = PORT_HAMILTONIANS["entries"], PORT_HAMILTONIANS["odd and even"]
+    assert not any(np.allclose(other.scaled_mass(plane * q), image, atol=1e-3) for other in others)
 
 
 def test_an_even_network_is_its_own_mirror_image():

@@ -58,6 +58,7 @@ def known(truth, samples=300, seed=0):
         forces=-x[cut:, :R] @ truth.stiffness,
         stiffness=truth.stiffness,
         damping=truth.damping,
+        mirrors=np.empty((0, R)),
     )
 
 

@@ -133,7 +133,9 @@ def with_mass(mass):
     masses = np.broadcast_to(mass, (len(EVEN.x_train), 2, 2)).copy()
     known = {field.name: getattr(EVEN, field.name) for field in fields(EVEN)}
     matrices = {"stiffness": np.eye(2), "damping": 0.1 * np.eye(2)}
-    return ConfigurationSamples(**known, mass=masses, forces=-EVEN.x_train[:, :2], **matrices)
+    return ConfigurationSamples(
+        **known, mass=masses, forces=-EVEN.x_train[:, :2], mirrors=np.empty((0, 2)), **matrices
+    )
 
 
 def test_where_the_mass_matrix_is_known_it_is_what_is_learned(tmp_path):

@@ -13,7 +13,7 @@ from flexsurr.storage import read_manifest, read_shards
 BEAM = "cantilever"
 
 TRAINING_COLUMNS = (
-    "study,variant,run_id,architecture,configurations,hidden,activation,degree,options,scaling,samples_per_trajectory,potential,mass_matrix,optimiser,"
+    "study,variant,run_id,architecture,configurations,hidden,activation,degree,terms,options,scaling,samples_per_trajectory,potential,mass_matrix,optimiser,"
     "learning_rate,weight_decay,batch_size,precision,device,loss,keep,patience,time_limit_s,give_up,seed,dataset,"
     "status,reason,epoch_limit,epochs,best_epoch,wall_s,processor_s,parameters,final_loss,train_nmse,validation_nmse,best_validation_nmse,published_loss,"
     "sampling,lattice,networks,inputs"
