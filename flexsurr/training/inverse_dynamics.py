@@ -46,7 +46,7 @@ from flexsurr.training.known_mass import (
 from flexsurr.training.least_squares import Triangle
 from flexsurr.training.losses import FieldErrors
 
-LARGEST_TOGETHER = 4000  # unknowns of all entries of M that are fitted at once
+LARGEST_TOGETHER = 1200  # unknowns of all entries of M that are fitted at once
 POTENTIAL_DEGREE = 10
 POTENTIAL_MONOMIALS = 400
 
