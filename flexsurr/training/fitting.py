@@ -139,7 +139,8 @@ def _begun(trial: Iterative, dataset: Dataset) -> tuple[Surrogate, Loss, Loss, O
                 entries, mass = untrained_mirrored(dataset, *what[1:])
             else:
                 entries, mass = untrained_entries(*what)
-            optimiser = EntriesOptimiser(entries, training[0][:, : entries.pairs] / entries.scales()[1], mass)
+            q = training[0][:, : entries.pairs] / entries.scales()[1]
+            optimiser = EntriesOptimiser(entries, q, mass, isinstance(dataset, ConfigurationSamples))
             return entries, FieldLoss(entries, *training), FieldLoss(entries, *validation), optimiser
         port = untrained_port_hamiltonian(*what)
         inverse, forward = (PortHamiltonianObjective.of(port, *training, forward=f) for f in (False, True))

@@ -241,18 +241,32 @@ class FieldLoss:
         return nmse(replace(self.network, parameters=parameters).derivative(0.0, self.x), self.dx)
 
 
+def _by_effect(mass: Array) -> Array:
+    """Weights of the packed entries of M̂ (m, r, r): an error δM counts by about what M⁻¹ δM is.
+
+    The loss is relative to the variance. With many modes entries differ by powers of ten, and the smallest
+    eigenvalue is a small part of the largest entry: relative to each entry alone M would not be positive
+    definite.
+    """
+    inverse = np.mean(np.diagonal(np.linalg.inv(mass), axis1=1, axis2=2), axis=0)
+    twice = 2.0 - np.eye(len(inverse))
+    weights = pack(np.outer(inverse, inverse) * twice)
+    found: Array = weights / (weights @ np.var(pack(mass), axis=0))
+    return found
+
+
 class EntriesOptimiser:
     """Levenberg–Marquardt on the entries of M̂ (m, r, r) at scaled coordinates `q`. Satisfies `Optimiser`.
 
-    Losses are those of the entries, each relative to its variance.
+    Losses are those of the entries, each relative to its variance; or where M is `known`, by its effect.
     """
 
-    def __init__(self, network: NetworkPortHamiltonian, q: Array, mass: Array) -> None:
+    def __init__(self, network: NetworkPortHamiltonian, q: Array, mass: Array, known: bool) -> None:
         weights, biases, readout, constants, *self._others = network.arrays()
         inputs, _ = network.inputs(q)
         target = pack(mass) - network.floor
         entries, activation = network.packed_size, network.activation
-        of_entries = 1.0 / (entries * spreads(target)[0] ** 2)
+        of_entries = _by_effect(mass) if known else 1.0 / (entries * spreads(target)[0] ** 2)
         self._images = None if network.mirrors is None else Images.of(network.mirrors)
         hidden = network.hidden[0] // (1 if self._images is None else self._images.count)
         self._shapes = layer_shapes((len(weights), hidden, entries))
