@@ -9,7 +9,7 @@ import pandas as pd
 
 from flexsurr.beam import EquilibriumNotFound, ModalBasis, reduce
 from flexsurr.cli.command import Job, for_rules
-from flexsurr.cli.runs import SELECTED, most_accurate, selected_runs, selected_surrogates
+from flexsurr.cli.runs import SELECTED, most_accurate, read_run, selected_runs, selected_surrogates
 from flexsurr.config.files import FILES, FilesStudy, Rollouts
 from flexsurr.config.schema import part_of
 from flexsurr.config.structure import Structure
@@ -22,11 +22,12 @@ from flexsurr.evaluation.energy import energy_table
 from flexsurr.evaluation.learned_loads import learn_forces, learned_load_table
 from flexsurr.evaluation.published import is_of_the_recipe
 from flexsurr.evaluation.responses import response_table
+from flexsurr.evaluation.rivals import Rival, name_of, rivals_table
 from flexsurr.evaluation.statics import natural_frequencies, shapes_table, static_tip
 from flexsurr.evaluation.validation import validation_table
 from flexsurr.storage import read_manifest
 from flexsurr.storage.frames import write_frame
-from flexsurr.surrogates import load_map, save_map
+from flexsurr.surrogates import load, load_map, save_map
 from flexsurr.training import load_dataset
 
 log = logging.getLogger(__name__)
@@ -124,6 +125,23 @@ def evaluate(job: Job, selection: Path, runs: Path, loads: list[Path], output: P
     }
     table = cost_table(job["study"], study, basis, variant, job["response"], surrogates, learned, recipes)
     write_frame(output, table)
+
+
+@for_rules(EquilibriumNotFound, ArithmeticError, runs="the folder of all runs", output="the table")
+def rivals(job: Job, runs: Path, output: Path) -> None:
+    """Measure time and error of every run of one number of modes beside the compiled reduced model.
+
+    Runs that have not finished are left out, with a line in the log. Alone on the machine.
+    """
+    study, basis = _reduced(job)
+    found = []
+    for key in job["runs"]:
+        metrics = read_run(runs / key / "metrics.json")
+        if metrics["status"] == "finished":
+            found.append(Rival(key, name_of(metrics), load(runs / key / "weights.npz")))
+        else:
+            log.warning("%s: %s %s, %s", key, name_of(metrics), metrics["status"], metrics["reason"])
+    write_frame(output, rivals_table(study, basis, "hamiltonian", found))
 
 
 @for_rules(EquilibriumNotFound, ArithmeticError, ValueError, **SELECTED, output="the GIF or HTML page")

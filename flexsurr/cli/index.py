@@ -22,6 +22,7 @@ FOR_RULES = {
         "respond",
         "learn-load",
         "evaluate",
+        "rivals",
         "watch",
         "rollouts",
         "rollout-cost",

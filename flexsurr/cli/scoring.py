@@ -40,21 +40,23 @@ Errors = Callable[[Any], dict[str, Any]]
     fit="what training says of the run",
     weights="the surrogate that it keeps",
     best="the one that validated best",
-    manifest="the dataset to score it on",
+    manifest="the dataset to score it on, where there is one",
     output="its metrics",
 )
 def score(job: Job, fit: Path, weights: Path, best: Path, manifest: list[Path], output: Path) -> None:
     """Score one run: its field on held-out samples, and long responses that no training has seen.
 
     `output` gets the run's metrics: what training says of it and, unless that failed, its scores. `manifest`
-    is that of the dataset on whose held-out samples every surrogate of the variant is scored. Where the run
-    keeps its last weights, those that validated best are scored too, as `best_…`.
+    is that of the dataset on whose held-out samples every surrogate of the variant is scored; a study without
+    datasets has none. Where the run keeps its last weights, those that validated best
+    are scored too, as `best_…`.
     """
     metrics = read_run(fit) | _setting(job)
     if metrics["status"] == "finished":
         surrogate = load(weights)
         errors = _beside_reference(job) if "structure" in job else _beside_recordings(job, manifest[0])
-        metrics |= held_out_errors(surrogate, load_dataset(manifest[0]))
+        for dataset in manifest:
+            metrics |= held_out_errors(surrogate, load_dataset(dataset))
         metrics |= errors(surrogate)
         if metrics["keep"] == "last":
             metrics |= {f"best_{name}": value for name, value in errors(load(best)).items()}

@@ -17,6 +17,7 @@ from flexsurr.config.settings import load
 from flexsurr.config.structure import JOINTS, Joint, Structure
 from flexsurr.evaluation.new_study import damping_s, study_files
 from flexsurr.storage import replacing
+from flexsurr.workflow.modes_plan import ModesPlan
 from flexsurr.workflow.plan import AnyPlan, Plan
 from flexsurr.workflow.sample_plan import SamplePlan
 from flexsurr.workflow.trajectory_plan import TrajectoryPlan
@@ -60,6 +61,8 @@ def _data(study: AnyPlan) -> str:
             return f"{resolved.structure.name}, {len(variants)} variants, {datasets} datasets each"
         case SamplePlan():
             return f"{len(study.datasets())} sets of samples"
+        case ModesPlan():
+            return f"{study.structure}, {len(study.plans)} numbers of modes"
     return f"{len(study.sources)} files"
 
 

@@ -10,10 +10,10 @@ import pandas as pd
 
 from flexsurr.beam import ModalBasis, reduced_order
 from flexsurr.config.study import Study, Variant
+from flexsurr.evaluation.candidates import Candidate, fastest
 from flexsurr.evaluation.cases import evaluation_cases, reference_solutions, sample_times
 from flexsurr.evaluation.columns import CROSSOVER_COLUMNS
-from flexsurr.evaluation.contenders import Contender, fastest
-from flexsurr.evaluation.cost import Setup, first_steps, measured
+from flexsurr.evaluation.cost import Setup, first_steps, measured_all
 from flexsurr.evaluation.ratios import summary
 from flexsurr.evaluation.timing import compile_ahead
 from flexsurr.surrogates import compiled
@@ -52,14 +52,14 @@ def rivals_table(study: Study, basis: ModalBasis, variant: Variant, rivals: Sequ
     t = sample_times(settings.duration_s, settings.output_step_s)
     cases = evaluation_cases(basis, study, "free")
     references = list(reference_solutions(basis, variant, cases, t, settings.reference_integrator))
-    models = [Contender(REFERENCE, "compiled", reduced_order(basis, variant, "compiled"))]
+    models = [Candidate(REFERENCE, "compiled", reduced_order(basis, variant, "compiled"))]
     models += [
-        Contender(rival.run_id, fastest(rival.surrogate), compiled(rival.surrogate)) for rival in rivals
+        Candidate(rival.run_id, fastest(rival.surrogate), compiled(rival.surrogate)) for rival in rivals
     ]
     setups = [Setup(model, settings.integrators[0]) for model in models]
     compile_ahead(partial(first_steps, setup, basis, references[0]) for setup in setups)
     modes = study.reduction.modes
-    found = summary(measured(setups, settings, basis, variant, references, f"{modes} modes"))
+    found = summary(measured_all(setups, settings, basis, variant, references, f"{modes} modes"))
     by_run = {rival.run_id: rival for rival in rivals}
     frame = found.assign(
         modes=modes,

@@ -38,15 +38,17 @@ class Images(NamedTuple):
     def of(cls, mirrors: Array) -> "Images":
         """Those of the planes (k, r), signs of the coordinates in each."""
         planes, r = mirrors.shape
-        of_coordinates = (mirrors < 0.0).astype(np.int64).T @ (1 << np.arange(planes))
+        bits = 1 << np.arange(planes, dtype=np.int64)
+        of_coordinates = np.array((mirrors < 0.0).astype(np.int64).T @ bits, dtype=np.int64)
         rows, columns = rows_and_columns(r)
+        of_entries: NDArray[np.int64] = np.bitwise_xor(of_coordinates[rows], of_coordinates[columns])
         signs = np.ones((1, 1))
         for _ in range(planes):
             signs = np.block([[signs, signs], [signs, -signs]])
-        return cls(of_coordinates, of_coordinates[rows] ^ of_coordinates[columns], signs)
+        return cls(of_coordinates, of_entries, signs)
 
     @property
-    def count(self) -> int:
+    def number(self) -> int:
         """2ᵏ, itself included."""
         return len(self.signs)
 
@@ -61,7 +63,7 @@ class Images(NamedTuple):
         read = self.signs[:, self.of_entries]  # (g, entries)
         return (
             np.hstack([sign[:, None] * weights for sign in turned]),
-            np.tile(biases, self.count),
+            np.tile(biases, self.number),
             np.vstack([readout * sign for sign in read]),
         )
 

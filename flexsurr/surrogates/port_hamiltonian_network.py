@@ -146,7 +146,7 @@ class NetworkPortHamiltonian(PortHamiltonian):
         images = Images.of(mirrors)
         weights, biases, readout, constant, *_ = self.arrays()
         neurons = self.hidden[0]
-        h = neurons // images.count
+        h = neurons // images.number
         _, of_q, *_ = self.scales()
         rows, columns = rows_and_columns(self.pairs)
         of_entries = roots[rows] * roots[columns]

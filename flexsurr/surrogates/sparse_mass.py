@@ -49,7 +49,7 @@ def sparse_kernel(
         groups.append((len(present), len(members)))
         places.append(present)
         order += members
-        mass.append(coefficients[np.ix_(members, present)].ravel())
+        mass.append(coefficients[members][:, present].ravel())
     kernel = SparseMassKernel(
         inverse_q,
         pieces,

@@ -39,9 +39,10 @@ class MirroredLayer:
     output_weights: Array
 
     @cached_property
-    def _with_ones(self) -> tuple[Array, Array]:
+    def _with_ones(self) -> tuple[Array, NDArray[np.int64]]:
         """x̃ = (x, 1) (m, r + 1), and the parity of each column: that of 1 is 0."""
-        return np.hstack([self.x, np.ones((len(self.x), 1))]), np.append(self.images.of_coordinates, 0)
+        parities = np.concatenate([self.images.of_coordinates, np.zeros(1, dtype=np.int64)])
+        return np.hstack([self.x, np.ones((len(self.x), 1))]), parities
 
     def weights(self, parameters: Array) -> list[Array]:
         """Views of the parameters in their shapes."""
@@ -52,7 +53,7 @@ class MirroredLayer:
         weights, biases, *_ = self.weights(parameters)
         x, parities = self._with_ones
         layer = np.vstack([weights, biases])
-        every = range(self.images.count)
+        every = range(self.images.number)
         z = self.images.transform(np.array([x[:, parities == c] @ layer[parities == c] for c in every]))
         sigma = activation_function(self.activation)
         return self.images.transform(sigma.value(z)), self.images.transform(sigma.slope(z))
@@ -71,7 +72,7 @@ class MirroredLayer:
     @cached_property
     def _members(self) -> list[tuple[int, NDArray[np.intp]]]:
         """The entries of each parity that there is."""
-        found = [(c, np.flatnonzero(self.images.of_entries == c)) for c in range(self.images.count)]
+        found = [(c, np.flatnonzero(self.images.of_entries == c)) for c in range(self.images.number)]
         return [(c, members) for c, members in found if len(members)]
 
     def loss(self, parameters: Array) -> float:

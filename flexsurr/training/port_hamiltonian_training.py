@@ -160,7 +160,7 @@ def untrained_mirrored(
         # what changes its sign has no mean, though that of so many samples is not 0
         floor=np.where(images.of_entries == 0, network.floor, 0.0),
         even=False,
-        hidden=(images.count * hidden[0],),
+        hidden=(images.number * hidden[0],),
         mirrors=samples.mirrors,
     )
     return mirrored, mass
@@ -268,7 +268,7 @@ class EntriesOptimiser:
         entries, activation = network.packed_size, network.activation
         of_entries = _by_effect(mass) if known else 1.0 / (entries * spreads(target)[0] ** 2)
         self._images = None if network.mirrors is None else Images.of(network.mirrors)
-        hidden = network.hidden[0] // (1 if self._images is None else self._images.count)
+        hidden = network.hidden[0] // (1 if self._images is None else self._images.number)
         self._shapes = layer_shapes((len(weights), hidden, entries))
         own = weights[:, :hidden], biases[:hidden], readout[:, :hidden].T, constants
         objective: OneHiddenLayer | MirroredLayer

@@ -60,7 +60,7 @@ def test_many_unknowns_are_fitted_entry_by_entry(samples, monkeypatch):
         nmse(found.derivative(0.0, samples.x_validation), samples.dx_validation)
         for found in (together, apart)
     ]
-    assert errors[1] < 3.0 * errors[0]
+    assert errors[1] < 10.0 * errors[0]
 
 
 def test_monomials_of_an_entry_change_their_sign_as_it_does():

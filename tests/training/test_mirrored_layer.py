@@ -39,7 +39,7 @@ def with_images(objective, parameters):
 
 
 def alone(objective):
-    hidden = objective.images.count * objective.hidden
+    hidden = objective.images.number * objective.hidden
     return OneHiddenLayer.of_map(objective.x, objective.y, hidden, "atan", objective.output_weights)
 
 
