@@ -65,5 +65,7 @@ def part_of(record_class: type[RecordT], values: Mapping[str, Any]) -> RecordT:
             fields[name] = TypeAdapter(annotation).validate_python(value)
     part = record_class.model_construct(**fields)
     for name in record_class.model_fields.keys() - values.keys():
-        part.__dict__.pop(name, None)
+        # what is left out where it has its default is in the job by that
+        if record_class.model_fields[name].exclude_if is None:
+            part.__dict__.pop(name, None)
     return part

@@ -60,7 +60,12 @@ BAD_VALUES = [
     (CONFIG, "tracking.uri", "127.0.0.1:5000", ["tracking.uri", "'127.0.0.1:5000'", "http://"]),
     (CONFIG, "tracking.uri", "http:/", ["tracking.uri", "'http:/'", "sqlite://"]),
     (CONFIG, "timing.cores", 0, ["timing.cores", "0", "greater than or equal to 1"]),
-    (CONFIG, "overrides.wnig", {"seed": 1}, ["overrides.wnig", "no such study", "cantilever, damped_spring"]),
+    (
+        CONFIG,
+        "overrides.wnig",
+        {"seed": 1},
+        ["overrides.wnig", "no such study", "cantilever, crossover, damped_spring"],
+    ),
     (CONFIG, "overrides.cantilever.sede", 1, ["overrides.cantilever.sede", "1", "did you mean 'seed'"]),
     (STRUCTURE, "length_mm", 1000.0, ["length_mm", "1000.0", "did you mean 'length_m'"]),
     (STRUCTURE, "length_m", "1 m", ["length_m", "'1 m'", "number"]),
@@ -278,7 +283,7 @@ def test_a_value_from_a_preset_is_blamed_on_the_preset(root):
 @pytest.mark.parametrize(
     ("base", "words"),
     [
-        ("wnig", ["'wnig' is no other study", "airliner, cantilever, damped"]),
+        ("wnig", ["'wnig' is no other study", "airliner, cantilever, crossover, damped"]),
         ("wing_unit", ["no other study"]),
     ],
 )
