@@ -132,10 +132,21 @@ def untrained_entries(
     else:
         mass = polynomial.scaled_mass(dataset.x_train[:, : network.pairs] / of_q)
     weights, *_, springs, dampers = network.arrays()
-    shape = len(weights), hidden[0], network.packed_size
-    first = views(initial_weights(*shape, seed, spread=1.0), layer_shapes(shape))
+    first = _first_layers(len(weights), hidden[0], seed, mass, known)
     parameters = _as_surrogate(first, springs, dampers)
     return replace(network, factored=False, parameters=parameters), mass
+
+
+def _first_layers(inputs: int, hidden: int, seed: int, mass: Array, known: bool) -> list[Array]:
+    """Weights, biases, readout and constants of a map to M̂; where that is `known` each entry by its size."""
+    shape = inputs, hidden, packed_size(mass.shape[-1])
+    weights, biases, readout, constants = views(
+        initial_weights(*shape, seed, spread=1.0), layer_shapes(shape)
+    )
+    if known:
+        sizes = 1.0 / np.sqrt(_mean_inverse(mass))
+        readout = readout * pack(np.outer(sizes, sizes))
+    return [weights, biases, readout, constants]
 
 
 def untrained_mirrored(
@@ -149,14 +160,10 @@ def untrained_mirrored(
     network, mass = untrained_entries(samples, hidden, activation, seed, potential)
     *_, springs, dampers = network.arrays()
     images = Images.of(samples.mirrors)
-    shape = network.pairs, hidden[0], network.packed_size
-    weights, biases, readout, constants = views(
-        initial_weights(*shape, seed, spread=1.0), layer_shapes(shape)
-    )
-    layers = [*images.of_neurons(weights, biases, readout), constants]
+    *first, constants = _first_layers(network.pairs, hidden[0], seed, mass, True)
     mirrored = replace(
         network,
-        parameters=_as_surrogate(layers, springs, dampers),
+        parameters=_as_surrogate([*images.of_neurons(*first), constants], springs, dampers),
         # what changes its sign has no mean, though that of so many samples is not 0
         floor=np.where(images.of_entries == 0, network.floor, 0.0),
         even=False,
@@ -248,10 +255,16 @@ def _by_effect(mass: Array) -> Array:
     eigenvalue is a small part of the largest entry: relative to each entry alone M would not be positive
     definite.
     """
-    inverse = np.mean(np.diagonal(np.linalg.inv(mass), axis1=1, axis2=2), axis=0)
+    inverse = _mean_inverse(mass)
     twice = 2.0 - np.eye(len(inverse))
     weights = pack(np.outer(inverse, inverse) * twice)
     found: Array = weights / (weights @ np.var(pack(mass), axis=0))
+    return found
+
+
+def _mean_inverse(mass: Array) -> Array:
+    """(r,) the mean diagonal of M⁻¹ for M (m, r, r)."""
+    found: Array = np.mean(np.diagonal(np.linalg.inv(mass), axis1=1, axis2=2), axis=0)
     return found
 
 
