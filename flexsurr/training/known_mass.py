@@ -178,9 +178,9 @@ def of_known_springs(
 
 
 def _sizes(samples: ConfigurationSamples) -> Array:
-    """(entries,) what errors of M's entries are relative to: the roots of its mean diagonal."""
-    roots = np.sqrt(np.mean(np.diagonal(samples.mass, axis1=1, axis2=2), axis=0))
-    return pack(np.outer(roots, roots))
+    """(entries,) what errors of M's entries are relative to: the sizes of its diagonal."""
+    sizes = np.sqrt(np.mean(np.diagonal(samples.mass, axis1=1, axis2=2) ** 2, axis=0))
+    return pack(np.sqrt(np.outer(sizes, sizes)))
 
 
 def _scaled(samples: ConfigurationSamples, scaling: PairScaling) -> tuple[Array, Array]:

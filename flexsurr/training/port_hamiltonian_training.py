@@ -42,6 +42,7 @@ TARGET_DEGREES = (8, 6, 4, 2)  # of the polynomial whose mass matrix a network o
 LARGEST_TARGET = 2000  # coefficients of its mass matrix
 FLOOR = 0.01  # of the mean mass matrix
 READOUT = 0.1  # of its diagonal, all neurons together
+NEARLY_ZERO = 1e-9  # beside the largest eigenvalue of a mass matrix
 SMALLEST = 1e-3  # eigenvalue of the mean mass matrix over the largest
 
 
@@ -263,8 +264,11 @@ def _by_effect(mass: Array) -> Array:
 
 
 def _mean_inverse(mass: Array) -> Array:
-    """(r,) the mean diagonal of M⁻¹ for M (m, r, r)."""
-    found: Array = np.mean(np.diagonal(np.linalg.inv(mass), axis1=1, axis2=2), axis=0)
+    """(r,) the mean diagonal of M⁻¹ for M (m, r, r); of a matrix that has none, of one near to it."""
+    values, vectors = np.linalg.eigh(mass)
+    least = NEARLY_ZERO * (float(np.max(np.abs(values))) or 1.0)
+    inverse = np.mean(vectors**2 / np.maximum(values, least)[:, None, :], axis=0)
+    found: Array = np.sum(inverse, axis=1)
     return found
 
 

@@ -91,7 +91,7 @@ def test_few_monomials_are_about_as_accurate(samples):
     errors = [
         nmse(found.derivative(0.0, samples.x_validation), samples.dx_validation) for found in (full, sparse)
     ]
-    assert errors[1] < 10.0 * errors[0]
+    assert errors[1] < 30.0 * errors[0]
     assert errors[1] < 1e-5
 
 
