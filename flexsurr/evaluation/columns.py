@@ -41,6 +41,7 @@ CROSSOVER_COLUMNS = (
     "relative_to_compiled_percent",
     "tip_error_percent",
     "diverged",
+    "operations",
     "run_id",
 )
 

@@ -14,8 +14,10 @@ from flexsurr.evaluation.candidates import Candidate, fastest
 from flexsurr.evaluation.cases import evaluation_cases, reference_solutions, sample_times
 from flexsurr.evaluation.columns import CROSSOVER_COLUMNS
 from flexsurr.evaluation.cost import Setup, first_steps, measured_all
+from flexsurr.evaluation.operations import operations
 from flexsurr.evaluation.ratios import summary
 from flexsurr.evaluation.timing import compile_ahead
+from flexsurr.simulation.rhs import Array, CompiledModel
 from flexsurr.surrogates import compiled
 
 REFERENCE = "rom"
@@ -46,7 +48,8 @@ def rivals_table(study: Study, basis: ModalBasis, variant: Variant, rivals: Sequ
     All are stepped by the first of the study's integrators, from the same initial states. Columns as
     `CROSSOVER_COLUMNS`: parameters is the number of those that are not zero, empty for the reduced model;
     wall_s the mean of a response [s]; tip_error_percent the worst, of the reference's peak, over the
-    responses that reached their end, and `diverged` counts the others. Run it alone on the machine.
+    responses that reached their end, and `diverged` counts the others; operations are what one right-hand
+    side takes. Run it alone on the machine.
     """
     settings = study.evaluation
     t = sample_times(settings.duration_s, settings.output_step_s)
@@ -61,6 +64,7 @@ def rivals_table(study: Study, basis: ModalBasis, variant: Variant, rivals: Sequ
     modes = study.reduction.modes
     found = summary(measured_all(setups, settings, basis, variant, references, f"{modes} modes"))
     by_run = {rival.run_id: rival for rival in rivals}
+    taken = {model.model: _operations(model, references[0].case.x0) for model in models}
     frame = found.assign(
         modes=modes,
         run_id=[key if key in by_run else "" for key in found["model"]],
@@ -69,8 +73,14 @@ def rivals_table(study: Study, basis: ModalBasis, variant: Variant, rivals: Sequ
         ),
         model=[by_run[key].model if key in by_run else key for key in found["model"]],
         wall_s=found["wall_s_mean"],
+        operations=pd.array([taken[key] for key in found["model"]], dtype="Int64"),
     )
     return frame[list(CROSSOVER_COLUMNS)]
+
+
+def _operations(candidate: Candidate, x: Array) -> int | None:
+    field = candidate.field
+    return operations(field, x) if isinstance(field, CompiledModel) else None
 
 
 def _parameters(rival: Rival) -> int:

@@ -19,6 +19,7 @@ def test_each_has_its_row_after_the_reduced_model(table, fitted):
     assert table["parameters"].isna().tolist() == [True, False, False]
     assert table["parameters"].iloc[1] == len(fitted.parameters)
     assert set(table["modes"]) == {1}
+    assert table["operations"].iloc[0] > table["operations"].iloc[1] > 0
 
 
 def test_all_are_stepped_alike_and_judged_by_the_reference(table):

@@ -22,11 +22,11 @@ MODELS = {
 def table() -> pd.DataFrame:
     rows = []
     for modes in (3, 8):
-        rows.append((modes, "rom", None, 0.4 * modes, 100.0, 1e-7, 0, ""))
+        rows.append((modes, "rom", None, 0.4 * modes, 100.0, 1e-7, 0, 16000, ""))
         for model, (parameters, cost, error) in MODELS.items():
             bad = modes == 8 and model == "polynomial_4_sparse"
             wall_s = 0.004 * modes * cost
-            rows.append((modes, model, parameters, wall_s, cost, error, 2 * bad, f"run-{model}"))
+            rows.append((modes, model, parameters, wall_s, cost, error, 2 * bad, parameters, f"run-{model}"))
     frame = pd.DataFrame(rows, columns=list(CROSSOVER_COLUMNS))
     return frame.astype({"parameters": "Int64"})
 
