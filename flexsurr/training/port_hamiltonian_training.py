@@ -257,9 +257,10 @@ def _by_effect(mass: Array) -> Array:
     definite.
     """
     inverse = _mean_inverse(mass)
-    twice = 2.0 - np.eye(len(inverse))
-    weights = pack(np.outer(inverse, inverse) * twice)
-    found: Array = weights / (weights @ np.var(pack(mass), axis=0))
+    of_entries = pack(np.outer(inverse, inverse))
+    spread, _ = spreads(pack(mass) * np.sqrt(of_entries))
+    twice = pack(2.0 - np.eye(len(inverse)))
+    found: Array = twice * of_entries / (twice @ spread**2)
     return found
 
 
