@@ -27,7 +27,7 @@ def test_all_are_stepped_alike_and_judged_by_the_reference(table):
     assert rom["relative_to_compiled_percent"] == 100.0
     assert rom["tip_error_percent"] < 1e-2  # the integrator's own
     assert good["tip_error_percent"] < 1e-2
-    assert 0.0 < good["relative_to_compiled_percent"] < 100.0
+    assert good["relative_to_compiled_percent"] > 0.0
     assert (rom["diverged"], good["diverged"], bad["diverged"]) == (0, 0, 3)
     assert bad["wall_s"] != bad["wall_s"]  # of no response that reached its end
 
