@@ -62,7 +62,6 @@ def test_on_the_printed_field_the_same_surrogate_errs(study, basis, fitted):
 
 def test_an_exploding_surrogate_diverges_and_claims_nothing(study, basis, exploding):
     errors = errors_of(study, basis, "hamiltonian", exploding)
-    assert errors.pop("operations") > 0  # what a right-hand side costs is known all the same
     assert errors == {
         "long_response_error_percent_worst": None,
         "long_response_error_percent_median": None,
