@@ -73,7 +73,7 @@ def test_a_network_of_the_mass_matrix_takes_it_too(mass_matrix, samples, tmp_pat
     errors = {}
     for potential in ("polynomial", None):
         trial = trial_of(
-            architecture="port_hamiltonian", configurations=600, hidden=(8,), activation="atan", epochs=40,
+            architecture="port_hamiltonian", configurations=600, hidden=(8,), activation="atan", epochs=60,
             potential=potential, mass_matrix=mass_matrix,
         )  # fmt: skip
         result = fit(trial, sampled, tmp_path / str(potential))

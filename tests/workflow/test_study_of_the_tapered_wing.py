@@ -59,4 +59,4 @@ def test_its_weight_is_learned_and_its_costs_are_known(wing):
     good = cost[(cost["model"] == "port_hamiltonian") & (cost["response"] == "free")]
     assert (good["tip_error_percent"] < 1.0).all()
     frequencies = pd.read_csv(wing.results / "tables" / "natural_frequencies.csv")
-    assert frequencies["fom_rad_s"].head(3).round(1).tolist() == [16.9, 61.7, 67.5]
+    assert frequencies["fom_rad_s"].head(3).round(1).tolist() == [16.9, 61.7, 67.4]  # as its study says
