@@ -1,5 +1,6 @@
 """What all tests share."""
 
+import shutil
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,17 @@ kernel_cache.activate(Path(__file__).parent / "simulation" / "closed_form_proble
 settings.register_profile("flexsurr", deadline=None, derandomize=True)
 settings.register_profile("search", deadline=None, print_blob=True, max_examples=1000)
 settings.load_profile("flexsurr")
+
+REPOSITORY = Path(__file__).parents[1]
+
+
+@pytest.fixture
+def root(tmp_path: Path) -> Path:
+    """A copy of the configuration and of the examples that it reads; a test may change it."""
+    for folder in ("config", "examples"):
+        shutil.copytree(REPOSITORY / folder, tmp_path / folder)
+    return tmp_path
+
 
 LONG = (
     "workflow/test_slurm.py",

@@ -22,10 +22,10 @@ from flexsurr.config.study import (
 
 
 class ModesEvaluation(Record):
-    """Free responses by which every run is timed and judged, beside the compiled reduced model."""
+    """Free responses by which every run is timed and measured, beside the compiled reduced model."""
 
     simulations: Count = 4
-    """Free responses that every model is timed on and judged by."""
+    """Free responses that every model is timed and measured on."""
     long_responses: Count = 2
     """Further ones, which score a run after training."""
     duration_s: Positive = 30.0
@@ -63,7 +63,7 @@ class ModesStudy(Learning):
     initial_conditions: InitialConditions = InitialConditions()
     """Where responses start."""
     evaluation: ModesEvaluation = ModesEvaluation()
-    """Responses by which models are timed and judged."""
+    """Responses by which models are timed and measured."""
 
     @field_validator("trained_for", mode="before")
     @classmethod

@@ -6,7 +6,7 @@ from flexsurr.config.sources import ResolvedModesStudy
 from flexsurr.workflow.study_plan import Job, Run, StudyPlan, trials_of
 from flexsurr.workflow.trajectory_plan import TrajectoryPlan
 
-# What every model of one number of modes is timed and judged by.
+# What every model of one number of modes is timed and measured on.
 RIVALS = (
     "seed",
     "reduction",

@@ -1,25 +1,18 @@
 """Planes of symmetry, by the signs that modes take in them."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from structures import CANTILEVER
 
 from flexsurr.beam import mirrors, reduce, reduced_order
 from flexsurr.config.along_span import FixedMass
-from flexsurr.config.structure import Structure
 from flexsurr.config.study import Reduction
+from flexsurr.config.study_files import read_structure
 
-WING = Structure(
-    name="wing",
-    length_m=16.0,
-    elements=6,
-    joints=("in_plane", "out_of_plane", "torsion"),
-    mass_per_length_kg_m=0.75,
-    bending_stiffness_in_plane_N_m2=4e6,
-    bending_stiffness_out_of_plane_N_m2=2e4,
-    torsional_stiffness_N_m2=1e4,
-    torsional_inertia_per_length_kg_m=0.1,
-    chord_m=1.0,
+WING = read_structure(Path(__file__).parents[2] / "config/structures/hale_wing.yaml").model_copy(
+    update={"elements": 6}
 )
 
 

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+from editing import change
 
 from flexsurr.config.errors import ConfigurationError
 from flexsurr.config.settings import load
@@ -15,25 +16,6 @@ CONFIG = "config/config.yaml"
 STUDY = "config/studies/cantilever.yaml"
 STRUCTURE = "config/structures/cantilever.yaml"
 SWEEP = "config/sweeps/cantilever.yaml"
-
-
-@pytest.fixture
-def root(tmp_path: Path) -> Path:
-    """A copy of the configuration that may be spoilt."""
-    shutil.copytree(REPOSITORY / "config", tmp_path / "config")
-    shutil.copytree(REPOSITORY / "examples", tmp_path / "examples")
-    return tmp_path
-
-
-def spoil(root: Path, file: str, keys: str, value: object) -> None:
-    """Set the value at dotted `keys` of a YAML file; numbers are places in lists."""
-    content = yaml.safe_load((root / file).read_text())
-    inner = content
-    *path, last = [int(key) if key.isdigit() else key for key in keys.split(".")]
-    for key in path:
-        inner = inner.setdefault(key, {}) if isinstance(inner, dict) else inner[key]
-    inner[last] = value
-    (root / file).write_text(yaml.safe_dump(content))
 
 
 def refusal(root: Path, *files: str) -> str:
@@ -194,8 +176,8 @@ BAD_VALUES = [
 @pytest.mark.parametrize(("file", "keys", "value", "words"), BAD_VALUES)
 def test_a_bad_value_is_refused_with_file_key_value_and_what_is_allowed(root, file, keys, value, words):
     if "torsional" in keys:
-        spoil(root, STRUCTURE, "joints", ["out_of_plane", "torsion"])
-    spoil(root, file, keys, value)
+        change(root, STRUCTURE, "joints", ["out_of_plane", "torsion"])
+    change(root, file, keys, value)
     message = refusal(root)
     assert all(word in message for word in [file, *words]), message
     assert "Traceback" not in message
@@ -236,7 +218,7 @@ def test_a_byte_order_mark_and_numbers_that_yaml_takes_for_text_are_read_as_they
 @pytest.mark.parametrize("results", ["~/out", "${HOME}/out", "$HOME/in/../out"])
 def test_results_may_lie_at_home_and_where_variables_say(root, monkeypatch, results):
     monkeypatch.setenv("HOME", str(root))
-    spoil(root, CONFIG, "results", results)
+    change(root, CONFIG, "results", results)
     assert load(root, [CONFIG]).settings.results == f"{root}/out"
 
 
@@ -247,7 +229,7 @@ def test_results_where_nothing_may_be_written_are_refused(root, monkeypatch):
 
 def test_a_study_may_have_hyphens_in_its_name(root):
     shutil.copy(root / STUDY, root / "config/studies/soft-beam.yaml")
-    spoil(root, CONFIG, "studies", ["soft-beam"])
+    change(root, CONFIG, "studies", ["soft-beam"])
     plan = Plan(load(root, [CONFIG]))
     assert plan.job("simulate", "soft-beam", "hamiltonian", "0")["study"] == "soft-beam"
 
@@ -265,9 +247,9 @@ def test_a_missing_key_is_named(root):
 
 
 def test_every_problem_is_told_at_once(root):
-    spoil(root, STRUCTURE, "length_m", -1.0)
-    spoil(root, STRUCTURE, "elements", 0)
-    spoil(root, SWEEP, "spaces.0.activation", ["sigmoid"])
+    change(root, STRUCTURE, "length_m", -1.0)
+    change(root, STRUCTURE, "elements", 0)
+    change(root, SWEEP, "spaces.0.activation", ["sigmoid"])
     lines = refusal(root).splitlines()
     assert len(lines) == 3
     assert [line.split(":")[0] for line in lines] == [STRUCTURE, STRUCTURE, SWEEP]
@@ -288,8 +270,8 @@ def test_a_value_from_a_preset_is_blamed_on_the_preset(root):
     ],
 )
 def test_what_a_study_cannot_be_based_on_is_named(root, base, words):
-    spoil(root, CONFIG, "studies", ["wing_unit"])
-    spoil(root, "config/studies/wing_unit.yaml", "based_on", base)
+    change(root, CONFIG, "studies", ["wing_unit"])
+    change(root, "config/studies/wing_unit.yaml", "based_on", base)
     message = refusal(root)
     assert message.startswith("config/studies/wing_unit.yaml: based_on: ")
     for word in words:
@@ -297,8 +279,8 @@ def test_what_a_study_cannot_be_based_on_is_named(root, base, words):
 
 
 def test_a_value_of_the_base_is_blamed_on_the_base(root):
-    spoil(root, CONFIG, "studies", ["wing_unit"])
-    spoil(root, "config/studies/wing.yaml", "dataset.step_s", -1)
+    change(root, CONFIG, "studies", ["wing_unit"])
+    change(root, "config/studies/wing.yaml", "dataset.step_s", -1)
     assert refusal(root).startswith("config/studies/wing.yaml: dataset.step_s: -1 is not allowed")
 
 

@@ -1,6 +1,5 @@
 """How a study of samples flies: read whole, and refused by name."""
 
-import shutil
 from pathlib import Path
 
 import pytest
@@ -19,13 +18,6 @@ def airliner(root: Path) -> ResolvedSampleStudy:
     (study,) = load(root, ["config/config.yaml"]).studies
     assert isinstance(study, ResolvedSampleStudy)
     return study
-
-
-@pytest.fixture
-def root(tmp_path: Path) -> Path:
-    """A copy of the configuration that may be spoilt."""
-    shutil.copytree(REPOSITORY / "config", tmp_path / "config")
-    return tmp_path
 
 
 BAD_VALUES = [

@@ -1,5 +1,4 @@
 import re
-import shutil
 from pathlib import Path
 
 import pytest
@@ -65,11 +64,9 @@ def test_every_preset_is_sound(preset):
     assert structures == ([alone[preset]] if preset in alone else ["cantilever", "wing"])
 
 
-def test_a_study_has_its_own_values_and_otherwise_those_of_the_study_it_is_based_on(tmp_path):
-    shutil.copytree(REPOSITORY / "config", tmp_path / "config")
-    shutil.copytree(REPOSITORY / "examples", tmp_path / "examples")
-    (tmp_path / "mine.yaml").write_text("studies: [wing, wing_unit]\n")
-    base, study = (one.study for one in load(tmp_path, ["config/config.yaml", "mine.yaml"]).studies)
+def test_a_study_has_its_own_values_and_otherwise_those_of_the_study_it_is_based_on(root):
+    (root / "mine.yaml").write_text("studies: [wing, wing_unit]\n")
+    base, study = (one.study for one in load(root, ["config/config.yaml", "mine.yaml"]).studies)
     assert (base.reduction.normalisation, study.reduction.normalisation) == ("mass", "unit")
     assert study.reduction.modes == base.reduction.modes
     assert (study.datasets, study.sweeps, study.trains_on) == (base.datasets, base.sweeps, base.trains_on)

@@ -1,6 +1,5 @@
 """The airliner's configuration and the jobs that follow from it."""
 
-import shutil
 from pathlib import Path
 
 import numpy as np
@@ -25,13 +24,6 @@ def airliner(root: Path) -> SamplePlan:
     return Plan(load(root, ["config/config.yaml"])).studies["airliner"]
 
 
-@pytest.fixture
-def copy(tmp_path) -> Path:
-    shutil.copytree(ROOT / "config", tmp_path / "config")
-    shutil.copytree(ROOT / "examples", tmp_path / "examples")
-    return tmp_path
-
-
 def edit(root: Path, file: str, old: str, new: str) -> None:
     path = root / file
     text = path.read_text(encoding="utf-8")
@@ -53,14 +45,14 @@ def test_there_are_baselines_and_the_network_of_the_study():
     assert (75, "tanh", 250) in [(trial.hidden[0], trial.activation, trial.epochs) for trial in networks]
 
 
-def test_a_changed_limit_asks_for_new_samples_and_a_changed_seed_of_weights_does_not(copy):
-    before = airliner(copy)
-    edit(copy, SWEEP, "epochs: [250]", "epochs: [251]")
-    other_epochs = airliner(copy)
+def test_a_changed_limit_asks_for_new_samples_and_a_changed_seed_of_weights_does_not(root):
+    before = airliner(root)
+    edit(root, SWEEP, "epochs: [250]", "epochs: [251]")
+    other_epochs = airliner(root)
     assert other_epochs.simulate("sobol", 0) == before.simulate("sobol", 0)
     assert other_epochs.runs.keys() != before.runs.keys()
-    edit(copy, LIMITS, "low: 7000.0", "low: 7500.0")
-    other_limits = airliner(copy)
+    edit(root, LIMITS, "low: 7000.0", "low: 7500.0")
+    other_limits = airliner(root)
     assert other_limits.dataset_hash("sobol") != before.dataset_hash("sobol")
     assert not other_limits.runs.keys() & before.runs.keys()
 
@@ -96,17 +88,17 @@ def test_a_changed_limit_asks_for_new_samples_and_a_changed_seed_of_weights_does
         (STUDY, "wing: [24, 5]", "wing: [24, 1]", "wing"),
     ],
 )
-def test_mistakes_are_refused_by_name(copy, file, old, new, problem):
-    edit(copy, file, old, new)
+def test_mistakes_are_refused_by_name(root, file, old, new, problem):
+    edit(root, file, old, new)
     with pytest.raises(ConfigurationError, match=problem) as error:
-        airliner(copy)
+        airliner(root)
     assert file in str(error.value)
 
 
-def test_a_file_that_is_not_there_is_named(copy):
-    edit(copy, STUDY, SWEEP, "config/none.yaml")
+def test_a_file_that_is_not_there_is_named(root):
+    edit(root, STUDY, SWEEP, "config/none.yaml")
     with pytest.raises(ConfigurationError, match=r"sweeps\.default: 'config/none\.yaml' is no file") as error:
-        airliner(copy)
+        airliner(root)
     assert str(error.value).startswith(f"{STUDY}: ")
 
 

@@ -1,13 +1,13 @@
 """A study of the user's own files: what is wrong is said before any job, and what its jobs depend on."""
 
 import json
-import shutil
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 import yaml
+from editing import change
 
 from flexsurr.config.errors import ConfigurationError
 from flexsurr.config.settings import load
@@ -19,11 +19,10 @@ FILES = ["config/config.yaml", "own.yaml"]
 
 
 @pytest.fixture
-def root(tmp_path: Path) -> Path:
-    shutil.copytree(REPOSITORY / "config", tmp_path / "config")
-    (tmp_path / "own.yaml").write_text("studies: [spring]\n")
-    write(tmp_path, recorded())
-    return tmp_path
+def root(root: Path) -> Path:
+    (root / "own.yaml").write_text("studies: [spring]\n")
+    write(root, recorded())
+    return root
 
 
 def recorded(trajectories: int = 4, samples: int = 20) -> pd.DataFrame:
@@ -35,16 +34,6 @@ def recorded(trajectories: int = 4, samples: int = 20) -> pd.DataFrame:
 def write(root: Path, frame: pd.DataFrame) -> None:
     (root / "data").mkdir(exist_ok=True)
     frame.to_csv(root / DATA, index=False)
-
-
-def change(root: Path, file: str, keys: str, value: object) -> None:
-    content = yaml.safe_load((root / file).read_text())
-    inner = content
-    *path, last = [int(key) if key.isdigit() else key for key in keys.split(".")]
-    for key in path:
-        inner = inner[key]
-    inner[last] = value
-    (root / file).write_text(yaml.safe_dump(content))
 
 
 def plan(root: Path) -> Plan:

@@ -1,11 +1,11 @@
 """A study of several numbers of modes: which runs it has, what its jobs depend on, and what it refuses."""
 
 import json
-import shutil
 from pathlib import Path
 
 import pytest
 import yaml
+from editing import change
 
 from flexsurr.config.errors import ConfigurationError
 from flexsurr.config.settings import load
@@ -17,25 +17,8 @@ STUDY, SWEEP = "config/studies/crossover.yaml", "config/sweeps/crossover.yaml"
 FURTHER = "config/sweeps/crossover_degree_6.yaml"
 
 
-@pytest.fixture
-def root(tmp_path: Path) -> Path:
-    shutil.copytree(REPOSITORY / "config", tmp_path / "config")
-    shutil.copytree(REPOSITORY / "examples", tmp_path / "examples")
-    return tmp_path
-
-
 def plan(root: Path) -> Plan:
     return Plan(load(root, ["config/config.yaml", PRESET]))
-
-
-def change(root: Path, file: str, keys: str, value: object) -> None:
-    content = yaml.safe_load((root / file).read_text())
-    inner = content
-    *path, last = [int(key) if key.isdigit() else key for key in keys.split(".")]
-    for key in path:
-        inner = inner[key]
-    inner[last] = value
-    (root / file).write_text(yaml.safe_dump(content))
 
 
 def refusal(root: Path) -> list[str]:

@@ -1,11 +1,11 @@
 """What each job depends on: changing a value changes the jobs that need it, and no others."""
 
 import json
-import shutil
 from pathlib import Path
 
 import pytest
 import yaml
+from editing import change
 
 from flexsurr.config.errors import ConfigurationError
 from flexsurr.config.settings import load
@@ -19,13 +19,6 @@ QUICK = "config/presets/quick.yaml"
 STUDY, SWEEP = "config/studies/cantilever.yaml", "config/sweeps/quick.yaml"
 STRUCTURE = "config/structures/cantilever.yaml"
 BEAM = "cantilever"
-
-
-@pytest.fixture
-def root(tmp_path: Path) -> Path:
-    shutil.copytree(REPOSITORY / "config", tmp_path / "config")
-    shutil.copytree(REPOSITORY / "examples", tmp_path / "examples")
-    return tmp_path
 
 
 def plan(root: Path) -> Plan:
@@ -54,16 +47,6 @@ def jobs(root: Path) -> dict[str, str]:
         for shard in range(beam(p).shards(variant)):
             found[f"simulate {variant} {shard}"] = beam(p).simulate(variant, shard)
     return {name: json.dumps(job, sort_keys=True) for name, job in found.items()}
-
-
-def change(root: Path, file: str, keys: str, value: object) -> None:
-    content = yaml.safe_load((root / file).read_text())
-    inner = content
-    *path, last = [int(key) if key.isdigit() else key for key in keys.split(".")]
-    for key in path:
-        inner = inner.setdefault(key, {}) if isinstance(inner, dict) else inner[key]
-    inner[last] = value
-    (root / file).write_text(yaml.safe_dump(content))
 
 
 NAMED = {"train", "score", "select"}  # a run on other data is another run

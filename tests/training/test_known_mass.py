@@ -1,6 +1,7 @@
 """Mass matrices that are known: every entry by itself, with every monomial or with few."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,8 +9,8 @@ from test_configuration_samples import known
 from test_inverse_dynamics import R, truth_of
 
 from flexsurr.beam import reduce
-from flexsurr.config.structure import Structure
 from flexsurr.config.study import InitialConditions, Reduction
+from flexsurr.config.study_files import read_structure
 from flexsurr.config.trial import trial_of
 from flexsurr.surrogates import compiled, load, pair_scaling, save
 from flexsurr.training import fit, nmse
@@ -17,17 +18,8 @@ from flexsurr.training.configuration_samples import configuration_samples
 from flexsurr.training.inverse_dynamics import fit_port_hamiltonian
 from flexsurr.training.known_mass import SeparateEntries, parities, with_constant
 
-WING = Structure(
-    name="wing",
-    length_m=16.0,
-    elements=6,
-    joints=("in_plane", "out_of_plane", "torsion"),
-    mass_per_length_kg_m=0.75,
-    bending_stiffness_in_plane_N_m2=4e6,
-    bending_stiffness_out_of_plane_N_m2=2e4,
-    torsional_stiffness_N_m2=1e4,
-    torsional_inertia_per_length_kg_m=0.1,
-    chord_m=1.0,
+WING = read_structure(Path(__file__).parents[2] / "config/structures/hale_wing.yaml").model_copy(
+    update={"elements": 6}
 )
 RANGES = InitialConditions(
     q_min_deg=-10.0, q_max_deg=10.0, p_min_kg_m2_s=0.0, p_max_kg_m2_s=0.0, higher_modes="as_forced"
