@@ -20,7 +20,7 @@ from flexsurr.surrogates.activations import (
     slope,
     two_slopes,
 )
-from flexsurr.surrogates.layers import Shapes, forward, layer_shapes, offset, size_of, views
+from flexsurr.surrogates.layers import Shapes, forward, layer_shapes, offset, size_of, views, write_products
 from flexsurr.surrogates.packed import packed_size, rows_and_columns
 from flexsurr.surrogates.scaling import FeatureScaling
 from flexsurr.surrogates.surrogate import Surrogate, symplectic
@@ -209,12 +209,8 @@ def _even_hnn(kernel, t, x, dx, work):
     n = offset(readout.size)
     inputs = r * (r + offset(1))
     z = inputs
-    e = offset(0)
-    for first in (offset(0), r):
-        for i in range(r):
-            for j in range(i + offset(1)):
-                work[e] = x[first + i] * x[first + j]
-                e += offset(1)
+    write_products(x, offset(0), r, work, offset(0))
+    write_products(x, r, r, work, inputs // offset(2))
     forward(layer, offset(0), inputs, n, work, offset(0), z)
     for k in range(n):
         work[z + k] = readout[k] * slope(activation, work[z + k])
@@ -246,12 +242,8 @@ def _jacobian_of_even_hnn(kernel, t, x, dx, jac, work):
     slopes = z + n
     bends = slopes + n
     by_x = bends + n
-    e = offset(0)
-    for first in (offset(0), r):
-        for i in range(r):
-            for j in range(i + offset(1)):
-                work[e] = x[first + i] * x[first + j]
-                e += offset(1)
+    write_products(x, offset(0), r, work, offset(0))
+    write_products(x, r, r, work, inputs // offset(2))
     forward(layer, offset(0), inputs, n, work, offset(0), z)
     for k in range(n):
         work[slopes + k] = readout[k] * slope(activation, work[z + k])

@@ -120,6 +120,16 @@ def offset(number):
     return np.uint64(number)
 
 
+@njit(fastmath=FLOATING_POINT, error_model="numpy")
+def write_products(x, first, r, work, products):
+    """The packed products x_i x_j, j ≤ i, of the r numbers of x from `first` on."""
+    e = products
+    for i in range(r):
+        for j in range(i + offset(1)):
+            work[e] = x[first + i] * x[first + j]
+            e += offset(1)
+
+
 @dataclass(frozen=True, eq=False)
 class Network(Surrogate):
     """One network, or several of the same shape, with one or more hidden layers of the given widths.

@@ -21,7 +21,7 @@ from flexsurr.simulation.rhs import Array, implements_rhs
 from flexsurr.surrogates.activations import slope, value
 from flexsurr.surrogates.layers import offset
 from flexsurr.surrogates.packed import OPTIONS, rows_and_columns
-from flexsurr.surrogates.port_hamiltonian import springs_and_dampers
+from flexsurr.surrogates.port_hamiltonian import springs_and_dampers, write_kinetic_adjoint
 
 
 class Images(NamedTuple):
@@ -138,18 +138,15 @@ def _mirrored_network(kernel, t, x, dx, work):
     for k in range(total):
         work[adjoint + k] = 0.0
     # ½ ∂/∂q (q̇ᵀ M q̇) = Σ ½ q̇_i q̇_j ∂M_ij/∂q
-    e = offset(0)
     for i in range(r):
         dx[i] = work[rates + i]
-        for j in range(i + offset(1)):
-            weight = work[rates + i] * work[rates + j]
-            if i == j:
-                weight *= 0.5
-            at = adjoint + of_entries[e]
-            row = e * h
-            for k in range(h):
-                work[at + k] += weight * readout[row + k]
-            e += offset(1)
+    write_kinetic_adjoint(dx, r, work, matrix)
+    for e in range(entries):
+        at = adjoint + of_entries[e]
+        row = e * h
+        weight = work[matrix + e]
+        for k in range(h):
+            work[at + k] += weight * readout[row + k]
     transform(work, adjoint, h, total)
     for k in range(total):
         work[adjoint + k] *= work[k]

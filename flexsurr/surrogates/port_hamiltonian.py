@@ -134,6 +134,17 @@ class PortHamiltonian(Surrogate):
 
 
 @njit(**OPTIONS)
+def write_kinetic_adjoint(rates, r, work, adjoint):
+    """∂/∂M of ½ q̇ᵀ M q̇ by the packed entries of M, at `adjoint`; `rates` begins with q̇ (r,)."""
+    e = adjoint
+    for i in range(r):
+        for j in range(i + offset(1)):
+            weight = rates[i] * rates[j]
+            work[e] = 0.5 * weight if i == j else weight
+            e += offset(1)
+
+
+@njit(**OPTIONS)
 def jacobian_of_motion(stiffness, damping, work, inverse, turned, curvature, jac):
     """∂ẋ/∂x into jac (2r, 2r), from matrices (r, r) row by row at their offsets in `work`.
 

@@ -4,14 +4,25 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
+from numba import njit
 
 from flexsurr.simulation.jacobian import implements_jacobian
 from flexsurr.simulation.linear_solvers import invert_packed, solve_packed
 from flexsurr.simulation.rhs import Array, implements_rhs
 from flexsurr.surrogates.activations import ActivationFunction, activation_function, curvature, slope, value
-from flexsurr.surrogates.layers import Dense, Shapes, forward, layer_shapes, offset, read, size_of, views
+from flexsurr.surrogates.layers import (
+    Dense,
+    Shapes,
+    forward,
+    layer_shapes,
+    offset,
+    read,
+    size_of,
+    views,
+    write_products,
+)
 from flexsurr.surrogates.mirrored_mass import Images, MirroredNetworkKernel
-from flexsurr.surrogates.packed import lower, pack, packed_size, rows_and_columns, symmetric
+from flexsurr.surrogates.packed import OPTIONS, lower, pack, packed_size, rows_and_columns, symmetric
 from flexsurr.surrogates.port_hamiltonian import PortHamiltonian, jacobian_of_motion, springs_and_dampers
 
 
@@ -192,35 +203,21 @@ class NetworkPortHamiltonianKernel(NamedTuple):
     factored: bool
 
 
-@implements_rhs(NetworkPortHamiltonianKernel, inline=False)
-def _network_port_hamiltonian(kernel, t, x, dx, work):
-    activation, layer, readout, constant, floor, stiffness, damping, even, factored = kernel
-    r = offset(x.size // 2)
-    entries = offset(constant.size)
-    n = offset(readout.size // constant.size)
-    inputs = entries if even else r
-    # work: s, then σ's arguments (later slopes), values, adjoints; L or E, M; q̇ and Lᵀ q̇; ∂/∂q
-    z = inputs
-    values = z + n
-    adjoint = values + n
-    factor = adjoint + n
-    matrix = factor + entries
-    rates = matrix + entries
-    turned = rates + r
-    e = offset(0)
-    for i in range(r):
-        if even:
-            for j in range(i + offset(1)):
-                work[e] = x[i] * x[j]
-                e += offset(1)
-        else:
+@njit(**OPTIONS)
+def _write_inputs(even, x, r, work):
+    """The inputs s at the start of `work`: q, or its packed products."""
+    if even:
+        write_products(x, offset(0), r, work, offset(0))
+    else:
+        for i in range(r):
             work[i] = x[i]
-    forward(layer, offset(0), inputs, n, work, offset(0), z)
-    for k in range(n):
-        work[values + k] = value(activation, work[z + k])
-    for k in range(n):
-        work[z + k] = slope(activation, work[z + k])
-    for e in range(entries):
+
+
+@njit(**OPTIONS)
+def _write_mass(kernel, r, n, work, values, factor, matrix):
+    """L or E at `factor`, of the n neurons' values, and the packed M at `matrix`."""
+    readout, constant, floor, factored = kernel.readout, kernel.constant, kernel.floor, kernel.factored
+    for e in range(offset(constant.size)):
         work[factor + e] = constant[e] + read(readout, e * n, work, values, n)
     e = offset(0)
     for i in range(r):
@@ -235,6 +232,31 @@ def _network_port_hamiltonian(kernel, t, x, dx, work):
                 total += work[row + j]
             work[matrix + e] = total
             e += offset(1)
+
+
+@implements_rhs(NetworkPortHamiltonianKernel, inline=False)
+def _network_port_hamiltonian(kernel, t, x, dx, work):
+    activation, layer, readout, constant, _, stiffness, damping, even, factored = kernel
+    r = offset(x.size // 2)
+    entries = offset(constant.size)
+    n = offset(readout.size // constant.size)
+    inputs = entries if even else r
+    # work: s, then σ's arguments (later slopes), values, adjoints; L or E, M; q̇ and Lᵀ q̇; ∂/∂q
+    z = inputs
+    values = z + n
+    adjoint = values + n
+    factor = adjoint + n
+    matrix = factor + entries
+    rates = matrix + entries
+    turned = rates + r
+    _write_inputs(even, x, r, work)
+    forward(layer, offset(0), inputs, n, work, offset(0), z)
+    for k in range(n):
+        work[values + k] = value(activation, work[z + k])
+    for k in range(n):
+        work[z + k] = slope(activation, work[z + k])
+    _write_mass(kernel, r, n, work, values, factor, matrix)
+    for i in range(r):
         work[rates + i] = x[r + i]
     solve_packed(work, np.int64(matrix), np.int64(rates), np.int64(r))
     for i in range(r):
@@ -281,7 +303,7 @@ def _network_port_hamiltonian(kernel, t, x, dx, work):
 
 @implements_jacobian(NetworkPortHamiltonianKernel)
 def _jacobian_of_network(kernel, t, x, dx, jac, work):
-    activation, layer, readout, constant, floor, stiffness, damping, even, factored = kernel
+    activation, layer, readout, constant, _, stiffness, damping, even, factored = kernel
     r = offset(x.size // 2)
     entries = offset(constant.size)
     n = offset(readout.size // constant.size)
@@ -302,14 +324,7 @@ def _jacobian_of_network(kernel, t, x, dx, jac, work):
     inverse = of_derivatives + r * r
     turned = inverse + r * r
     curved = turned + r * r
-    e = offset(0)
-    for i in range(r):
-        if even:
-            for j in range(i + offset(1)):
-                work[e] = x[i] * x[j]
-                e += offset(1)
-        else:
-            work[i] = x[i]
+    _write_inputs(even, x, r, work)
     forward(layer, offset(0), inputs, n, work, offset(0), z)
     for k in range(n):
         work[values + k] = value(activation, work[z + k])
@@ -330,25 +345,12 @@ def _jacobian_of_network(kernel, t, x, dx, jac, work):
                     if even:
                         work[by_q + j * n + k] += layer[row + k] * x[i]
             e += offset(1)
-    for e in range(entries):
-        work[factor + e] = constant[e] + read(readout, e * n, work, values, n)
-    e = offset(0)
-    for i in range(r):
-        work[turned_rates + i] = 0.0
-        row = factor + i * (i + offset(1)) // offset(2)
-        for j in range(i + offset(1)):
-            other = factor + j * (j + offset(1)) // offset(2)
-            total = floor[e]
-            if factored:
-                for k in range(j + offset(1)):
-                    total += work[row + k] * work[other + k]
-            else:
-                total += work[row + j]
-            work[matrix + e] = total
-            e += offset(1)
+    _write_mass(kernel, r, n, work, values, factor, matrix)
     invert_packed(work, np.int64(matrix), np.int64(inverse), np.int64(r))
     for k in range(n):
         work[adjoint + k] = 0.0
+    for i in range(r):
+        work[turned_rates + i] = 0.0
     e = offset(0)
     for i in range(r):
         for j in range(i + offset(1)):

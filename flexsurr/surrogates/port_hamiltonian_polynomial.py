@@ -22,7 +22,12 @@ from flexsurr.surrogates.monomials import (
     write_monomials,
 )
 from flexsurr.surrogates.packed import lower, symmetric
-from flexsurr.surrogates.port_hamiltonian import PortHamiltonian, jacobian_of_motion, springs_and_dampers
+from flexsurr.surrogates.port_hamiltonian import (
+    PortHamiltonian,
+    jacobian_of_motion,
+    springs_and_dampers,
+    write_kinetic_adjoint,
+)
 from flexsurr.surrogates.sparse_mass import sparse_kernel
 
 SPARSE = 0.7  # of all coefficients: with fewer that are not zero, to look them up costs less than to use all
@@ -173,12 +178,7 @@ def _polynomial_port_hamiltonian(kernel, t, x, dx, work):
     for i in range(r):
         dx[i] = work[rates + i]
     # the adjoint of ½ q̇ᵀ M q̇: by the entries of M, in their places; by the monomials; by q
-    e = matrix
-    for i in range(r):
-        for j in range(i + offset(1)):
-            weight = work[rates + i] * work[rates + j]
-            work[e] = 0.5 * weight if i == j else weight
-            e += offset(1)
+    write_kinetic_adjoint(dx, r, work, matrix)
     for k in range(count):
         work[adjoint + k] = 0.0
     for e in range(offset(0), entries - odd, offset(2)):
@@ -238,13 +238,11 @@ def _jacobian_of_polynomial(kernel, t, x, dx, jac, work):
     # and so is ½ q̇ᵀ M q̇
     for k in range(count):
         work[adjoint + k] = 0.0
-    e = offset(0)
-    for i in range(r):
-        for j in range(i + offset(1)):
-            weight = 0.5 * dx[i] * dx[j] if i == j else dx[i] * dx[j]
-            for k in range(count):
-                work[adjoint + k] += weight * mass[e * count + k]
-            e += offset(1)
+    write_kinetic_adjoint(dx, r, work, matrix)
+    for e in range(entries):
+        weight = work[matrix + e]
+        for k in range(count):
+            work[adjoint + k] += weight * mass[e * count + k]
     pull_back(pieces, r, phi, adjoint, slopes, work)
     for m in range(r):
         pull_back_along(pieces, r, phi, adjoint, slopes, m, tangents, work)

@@ -13,7 +13,7 @@ from flexsurr.simulation.linear_solvers import solve_packed
 from flexsurr.simulation.rhs import Array, implements_rhs
 from flexsurr.surrogates.layers import offset
 from flexsurr.surrogates.monomials import pull_back, write_monomials
-from flexsurr.surrogates.port_hamiltonian import springs_and_dampers
+from flexsurr.surrogates.port_hamiltonian import springs_and_dampers, write_kinetic_adjoint
 
 
 class SparseMassKernel(NamedTuple):
@@ -102,12 +102,7 @@ def _sparse_mass(kernel, t, x, dx, work):
     for i in range(r):
         dx[i] = work[rates + i]
     # the adjoint of ½ q̇ᵀ M q̇: by the entries of M, in their places; by the monomials; by q
-    e = matrix
-    for i in range(r):
-        for j in range(i + offset(1)):
-            weight = work[rates + i] * work[rates + j]
-            work[e] = 0.5 * weight if i == j else weight
-            e += offset(1)
+    write_kinetic_adjoint(dx, r, work, matrix)
     for k in range(count):
         work[adjoint + k] = 0.0
     place = offset(0)
