@@ -1,6 +1,7 @@
 """What the selected surrogates are worth, and what they cost, beside a reference model or recordings."""
 
 import logging
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -15,12 +16,13 @@ from flexsurr.config.schema import part_of
 from flexsurr.config.structure import Structure
 from flexsurr.config.study import Study
 from flexsurr.evaluation import rollouts as of_rollouts
-from flexsurr.evaluation.candidates import with_learned_loads
+from flexsurr.evaluation.candidates import Candidate, with_learned_loads
 from flexsurr.evaluation.cases import Response, evaluation_cases
 from flexsurr.evaluation.cost import cost_table
 from flexsurr.evaluation.energy import energy_table
 from flexsurr.evaluation.learned_loads import learn_forces, learned_load_table
 from flexsurr.evaluation.published import is_of_the_recipe
+from flexsurr.evaluation.rehearsal import rehearsed
 from flexsurr.evaluation.responses import response_table
 from flexsurr.evaluation.rivals import Rival, name_of, rivals_table
 from flexsurr.evaluation.statics import natural_frequencies, shapes_table, static_tip
@@ -105,6 +107,22 @@ def learn_load(job: Job, manifest: Path, polynomial: Path, network: Path, errors
     write_frame(errors, table)
 
 
+@for_rules(
+    EquilibriumNotFound, ArithmeticError, **SELECTED, loads="learned loads", output="what was rehearsed"
+)
+def rehearse(job: Job, selection: Path, runs: Path, loads: list[Path], output: Path) -> None:
+    """Compile what will be timed of one variant, in both responses: arguments are those of `evaluate`."""
+    study, basis = _reduced(job)
+    variant = job["variant"]
+    surrogates = selected_surrogates(selection, variant, runs)
+    under_loads = _under_learned_loads(selection, variant, surrogates, loads)
+    learned: dict[Response, list[Candidate]] = {"free": [], "forced": under_loads}
+    tables = [
+        rehearsed(study, basis, variant, response, surrogates, added) for response, added in learned.items()
+    ]
+    write_frame(output, pd.concat(tables, ignore_index=True))
+
+
 @for_rules(EquilibriumNotFound, ArithmeticError, **SELECTED, loads="learned loads", output="the cost table")
 def evaluate(job: Job, selection: Path, runs: Path, loads: list[Path], output: Path) -> None:
     """Measure time and error of every model, implementation and integrator; alone on the machine.
@@ -115,9 +133,7 @@ def evaluate(job: Job, selection: Path, runs: Path, loads: list[Path], output: P
     study, basis = _reduced(job)
     variant = job["variant"]
     surrogates = selected_surrogates(selection, variant, runs)
-    best = most_accurate(selection, variant)
-    maps = {path.stem: load_map(path) for path in loads}
-    learned = [] if best is None else with_learned_loads(best, surrogates[best], maps)
+    learned = _under_learned_loads(selection, variant, surrogates, loads)
     recipes = {
         name: run["architecture"]
         for name, run in selected_runs(selection, variant).items()
@@ -197,6 +213,15 @@ def rollout_cost(job: Job, selection: Path, runs: Path, manifest: Path, output: 
 def _held_out(job: Job, manifest: Path) -> tuple[Rollouts, of_rollouts.HeldOutTrajectories]:
     settings = part_of(FilesStudy, job["part"]).rollouts
     return settings, of_rollouts.HeldOutTrajectories.of(read_manifest(manifest), settings.trajectories)
+
+
+def _under_learned_loads(
+    selection: Path, variant: str, surrogates: Mapping[str, Any], loads: list[Path]
+) -> list[Candidate]:
+    """The most accurate of the surrogates under each of the learned loads."""
+    best = most_accurate(selection, variant)
+    maps = {path.stem: load_map(path) for path in loads}
+    return [] if best is None else with_learned_loads(best, surrogates[best], maps)
 
 
 def _reduced(job: Job) -> tuple[Study, ModalBasis]:

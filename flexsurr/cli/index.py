@@ -21,6 +21,7 @@ FOR_RULES = {
         "validate",
         "respond",
         "learn-load",
+        "rehearse",
         "evaluate",
         "rivals",
         "watch",

@@ -27,7 +27,7 @@ from flexsurr.evaluation.columns import COST_COLUMNS
 from flexsurr.evaluation.energy import drift_percent, energy_error_percent
 from flexsurr.evaluation.published import beside
 from flexsurr.evaluation.ratios import PAPERS_INTEGRATOR, summary
-from flexsurr.evaluation.timing import compile_ahead, cores, measuring, wall_time
+from flexsurr.evaluation.timing import cores, measuring, wall_time
 from flexsurr.simulation import Trajectory, simulate
 from flexsurr.simulation.rhs import Array, Model
 
@@ -121,13 +121,6 @@ def measurements(
     t = sample_times(settings.duration_s, settings.output_step_s)
     cases = evaluation_cases(basis, study, response)
     references = list(reference_solutions(basis, variant, cases, t, settings.reference_integrator))
-    learned = list(learned)
-    # before torch is there: its threads would not survive a fork
-    compile_ahead(
-        partial(first_steps, setup, basis, references[0])
-        for setup in setups([*candidates(basis, variant, surrogates), *learned], settings.integrators)
-        if setup.candidate.steppable
-    )
     models = [*candidates(basis, variant, surrogates, with_torch=True), *learned]
     timed = setups(models, settings.integrators)
     return measured_all(timed, settings, basis, variant, references, f"{variant} {response}")

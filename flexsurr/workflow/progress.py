@@ -24,6 +24,7 @@ TYPICAL_S = {
     "responses": 12.0,
     "validation": 15.0,
     "learn_load": 5.0,
+    "rehearse": 40.0,
     "evaluate": 45.0,
     "fly": 20.0,
     "fly_randomly": 90.0,

@@ -159,6 +159,10 @@ class TrajectoryPlan(FieldPlan):
         """The free response of the selected surrogates, moving."""
         return {**self.part(WATCH), "study": self.name, "variant": variant}
 
+    def rehearse(self, variant: str) -> Job:
+        """What will be timed."""
+        return {**self.part(EVALUATION), "variant": variant}
+
     def cost(self, variant: str, response: str) -> Job:
         """Wall times and errors of everything, under one response."""
         return {**self.part(COST), "study": self.name, "variant": variant, "response": response}

@@ -37,7 +37,13 @@ def products_of(*reads: str, study: str = BEAM) -> dict[str, int]:
 RUNS = ("metrics", "relatives", "history")
 COSTS = ("cost-*-*", "cost-*")
 RESPONSES = ("response-*-free", "response-*-forced", "response-*-sustained", "energy-*")
-SELECTED = {"select": 1, "responses": 2, "evaluate": 4, **products_of(*RUNS, *COSTS, *RESPONSES)}
+SELECTED = {
+    "select": 1,
+    "responses": 2,
+    "rehearse": 2,
+    "evaluate": 4,
+    **products_of(*RUNS, *COSTS, *RESPONSES),
+}
 FLOWN = {
     "select": 1,
     "accuracy": 1,

@@ -57,15 +57,46 @@ rule learn_load:
         " > {log:q} 2>&1"
 
 
+def learned_loads(wildcards):
+    """The files of the study's load as it has been learned."""
+    learned = plan.studies[wildcards.study].learns_load
+    return [
+        rules.learn_load.output[form] for form in ("polynomial", "network") if learned
+    ]
+
+
+rule rehearse:
+    # It compiles what is timed, beside other jobs: a job that measures time keeps all cores waiting.
+    input:
+        selection=f"{RESULTS}/selected/{{study}}.json",
+        loads=learned_loads,
+    output:
+        f"{RESULTS}/evaluation/{{study}}/rehearsed-{{variant}}.parquet",
+    log:
+        f"{RESULTS}/logs/rehearse/{{study}}-{{variant}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/rehearse/{{study}}-{{variant}}.tsv"
+    threads: 1
+    resources:
+        mem_mb=2000,
+        runtime=60,
+    params:
+        job=job("rehearse", "study", "variant"),
+        code=code("rehearse"),
+        runs=f"{RESULTS}/runs",
+    message:
+        "compiling what is timed of {wildcards.study}, {wildcards.variant}"
+    shell:
+        "python -m flexsurr rehearse --job {params.job:q} --selection {input.selection:q}"
+        " --runs {params.runs:q} --loads {input.loads:q} --output {output:q} > {log:q} 2>&1"
+
+
 rule evaluate:
     # It measures time, so it asks for every core: nothing else runs beside it.
     input:
+        rules.rehearse.output,
         selection=f"{RESULTS}/selected/{{study}}.json",
-        loads=lambda w: (
-            [rules.learn_load.output.polynomial, rules.learn_load.output.network]
-            if w.response == "forced" and plan.studies[w.study].learns_load
-            else []
-        ),
+        loads=lambda w: learned_loads(w) if w.response == "forced" else [],
     output:
         f"{RESULTS}/evaluation/{{study}}/cost-{{variant}}-{{response}}.parquet",
     log:
