@@ -11,7 +11,7 @@ INSTALLED := $(VENV)/.installed
 export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
 export MLFLOW_DISABLE_TELEMETRY := true
 
-.PHONY: help install reproduce reproduce-full crossover report smoke lint check test coverage audit reference docs ui benchmark browser postgresql slurm compiler clean
+.PHONY: help install reproduce reproduce-full crossover report smoke lint check test coverage audit reference tables docs ui benchmark browser postgresql slurm compiler clean
 
 help:
 	@echo "make install      the environment alone, in .venv"
@@ -29,6 +29,7 @@ help:
 	@echo "make test         every check and test"
 	@echo "make coverage     the quick tests, with the lines of Python that they reach"
 	@echo "make reference    docs/reference.md anew"
+	@echo "make tables       the tables of README.md and docs anew, of what is in results"
 	@echo "make docs         the documentation as pages, build/site/index.html"
 	@echo "make audit        what is installed against known advisories   (ADVISORIES=advisories.zip)"
 	@echo
@@ -90,6 +91,9 @@ coverage: $(INSTALLED)
 
 reference: $(INSTALLED)
 	flexsurr reference --output docs/reference.md
+
+tables: $(INSTALLED)
+	python docs/tables.py
 
 docs: $(INSTALLED)
 	python -m sphinx --quiet --fail-on-warning --keep-going --builder html docs build/site
