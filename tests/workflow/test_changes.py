@@ -63,7 +63,6 @@ LEARNT = {
 @pytest.mark.parametrize(
     ("file", "keys", "value", "jobs"),
     [
-        (SWEEP, "spaces.0.epochs", [21], {"trials": 1, **SELECTED}),
         (SWEEP, "spaces.1.hidden", [[8], [4]], {"trials": 1, **SELECTED}),
         (QUICK, f"{OVER}.dataset.trajectories", 9, {"shards": 2, **LEARNT}),
         (QUICK, f"{OVER}.evaluation.repeats", 2, {"evaluate": 4, **products_of(*COSTS)}),
@@ -137,6 +136,7 @@ def test_a_sweep_of_which_no_trial_finishes_ends_with_tables_that_say_so(copy_of
     space = {"architecture": "hnn", "hidden": [[6]], "activation": ["half_log"], "give_up": [rule]}
     for sweep in (SWEEP, "config/sweeps/quick_data_free.yaml"):
         copy_of_quick.change(sweep, "spaces", [space])
+    copy_of_quick.change(QUICK, f"{OVER}.variants", ["hamiltonian"])  # one is as good as two, in half the time
     copy_of_quick.run_well(BEAM)
     tables = copy_of_quick.results / "tables" / BEAM
     sweeps = pd.read_csv(tables / "sweeps.csv")
@@ -148,6 +148,17 @@ def test_a_sweep_of_which_no_trial_finishes_ends_with_tables_that_say_so(copy_of
     assert "every trial was" in (tables / "sweeps.html").read_text()
     # what they are compared with is measured all the same
     assert set(pd.read_csv(tables / "cost.csv")["model"]) == {"rom"}
+
+
+@pytest.fixture(scope="module")
+def with_its_code(quick, make_project):
+    """The finished quick preset with a copy of the package, which it runs; an edit is taken back."""
+    project = make_project(quick)
+    stray = shutil.ignore_patterns("__pycache__")
+    shutil.copytree(project.code / "flexsurr", project.root / "flexsurr", ignore=stray)
+    project.code = project.root
+    assert project.scheduled() == {}
+    return project
 
 
 @pytest.mark.parametrize(
@@ -180,13 +191,14 @@ def test_a_sweep_of_which_no_trial_finishes_ends_with_tables_that_say_so(copy_of
         ),
     ],
 )
-def test_editing_code(copy_of_quick, file, made_again, left_alone):
-    stray = shutil.ignore_patterns("__pycache__")
-    shutil.copytree(copy_of_quick.code / "flexsurr", copy_of_quick.root / "flexsurr", ignore=stray)
-    copy_of_quick.code = copy_of_quick.root
-    with (copy_of_quick.root / file).open("a") as source:
-        source.write("# another thought\n")
-    scheduled = copy_of_quick.scheduled()
+def test_editing_code(with_its_code, file, made_again, left_alone):
+    source = with_its_code.root / file
+    before = source.read_text()
+    source.write_text(before + "# another thought\n")
+    try:
+        scheduled = with_its_code.scheduled()
+    finally:
+        source.write_text(before)
     assert made_again <= set(scheduled)
     assert not left_alone & set(scheduled)
 

@@ -89,6 +89,55 @@ def results_of(project) -> dict[str, dict]:
     return found
 
 
+def running_trials(project) -> list[str]:
+    """The run_ids of what is under way, by what the page says."""
+    client = MlflowClient(store_uri(None, project.results / "mlflow"))
+    experiment = client.get_experiment_by_name(BEAM)
+    running = client.search_runs([experiment.experiment_id], "attributes.status = 'RUNNING'")
+    return [run.data.tags[RUN_KEY] for run in running if RUN_KEY in run.data.tags]
+
+
+def jobs_told_to_stop_end_their_runs_at_once(project) -> None:
+    """SIGTERM, as a cluster sends it: the run on the page is KILLED before anything runs again."""
+    snakemake = project.start(*TARGETS)
+    for process in wait_until_it_learns(project):
+        os.kill(process, signal.SIGTERM)
+    assert snakemake.wait(120) != 0
+    assert running_trials(project) == []
+
+
+def killed_jobs_end_snakemake(project) -> None:
+    snakemake = project.start(*TARGETS)
+    for process in wait_until_it_learns(project):
+        os.kill(process, signal.SIGKILL)
+    assert snakemake.wait(120) != 0
+    assert running_trials(project) != []  # nobody could tell the page
+
+
+def a_second_snakemake_in_the_folder_is_refused_and_ctrl_c_ends_the_first(project) -> None:
+    snakemake = project.start(*TARGETS)
+    wait_until_it_learns(project)
+    code, output = project.run(*TARGETS, said="second.out")
+    assert code != 0
+    assert "cannot be locked" in output
+    assert snakemake.poll() is None
+    os.killpg(snakemake.pid, signal.SIGINT)
+    assert snakemake.wait(120) != 0
+    eventually(lambda: training_processes(project) == [])
+
+
+def after_a_killed_snakemake_the_next_asks_to_be_unlocked(project) -> None:
+    """The jobs of the killed one live on for a while."""
+    snakemake = project.start(*TARGETS)
+    wait_until_it_learns(project)
+    snakemake.kill()
+    snakemake.wait(120)
+    code, output = project.run(*TARGETS)
+    assert code != 0
+    assert "--unlock" in output
+    project.run_well("--unlock")
+
+
 def finishes_as_if_undisturbed(project, undisturbed) -> None:
     """Run again: the same results, nothing left running, nothing half written, nothing more to do."""
     project.run_well(*TARGETS)
@@ -103,47 +152,10 @@ def finishes_as_if_undisturbed(project, undisturbed) -> None:
     assert "Nothing to be done" in project.run_well(*TARGETS)
 
 
-def test_a_killed_job(disturbed, undisturbed):
-    snakemake = disturbed.start(*TARGETS)
-    for process in wait_until_it_learns(disturbed):
-        os.kill(process, signal.SIGKILL)
-    assert snakemake.wait(120) != 0
+def test_a_sweep_interrupted_in_every_way_ends_as_if_undisturbed(disturbed, undisturbed):
+    """One story: each interruption meets what the one before it has left, and one run ends them all."""
+    jobs_told_to_stop_end_their_runs_at_once(disturbed)
+    killed_jobs_end_snakemake(disturbed)
+    a_second_snakemake_in_the_folder_is_refused_and_ctrl_c_ends_the_first(disturbed)
+    after_a_killed_snakemake_the_next_asks_to_be_unlocked(disturbed)
     finishes_as_if_undisturbed(disturbed, undisturbed)
-
-
-def test_a_killed_snakemake(disturbed, undisturbed):
-    """Its jobs live on for a while, and the next Snakemake asks to be unlocked."""
-    snakemake = disturbed.start(*TARGETS)
-    wait_until_it_learns(disturbed)
-    snakemake.kill()
-    snakemake.wait(120)
-    code, output = disturbed.run(*TARGETS)
-    assert code != 0
-    assert "--unlock" in output
-    disturbed.run_well("--unlock")
-    finishes_as_if_undisturbed(disturbed, undisturbed)
-
-
-def test_a_second_snakemake_in_the_folder_is_refused_and_ctrl_c_ends_the_first(disturbed, undisturbed):
-    snakemake = disturbed.start(*TARGETS)
-    wait_until_it_learns(disturbed)
-    code, output = disturbed.run(*TARGETS, said="second.out")
-    assert code != 0
-    assert "cannot be locked" in output
-    assert snakemake.poll() is None
-    os.killpg(snakemake.pid, signal.SIGINT)
-    assert snakemake.wait(120) != 0
-    eventually(lambda: training_processes(disturbed) == [])
-    finishes_as_if_undisturbed(disturbed, undisturbed)
-
-
-def test_a_job_told_to_stop_ends_its_run_at_once(disturbed):
-    """SIGTERM, as a cluster sends it: the run on the page is KILLED before anything runs again."""
-    snakemake = disturbed.start(*TARGETS)
-    for process in wait_until_it_learns(disturbed):
-        os.kill(process, signal.SIGTERM)
-    assert snakemake.wait(120) != 0
-    client = MlflowClient(store_uri(None, disturbed.results / "mlflow"))
-    experiment = client.get_experiment_by_name(BEAM)
-    running = client.search_runs([experiment.experiment_id], "attributes.status = 'RUNNING'")
-    assert [run for run in running if RUN_KEY in run.data.tags] == []
