@@ -51,6 +51,6 @@ def test_reduced_under_a_load_it_responds_alike_in_all_implementations_and_keeps
     basis = reduce(still, Reduction(modes=3, normalisation="mass"))
     model = reduced_order(basis, "hamiltonian", "compiled")
     start = np.array([0.5, 0.1, -0.1, 2.0, 0.0, 1.0])
-    tight = Integrator(method="dop853", rtol=1e-10, atol=1e-12)
+    tight = Integrator(method="scipy_dop853", rtol=1e-10, atol=1e-12)
     energy = model.energy(simulate(model, np.linspace(0.0, 1.0, 21), start, tight).x)
     np.testing.assert_allclose(energy, energy[0], rtol=1e-8, atol=1e-8 * np.ptp(energy))

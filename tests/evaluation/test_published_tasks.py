@@ -23,7 +23,7 @@ from flexsurr.surrogates import compiled
 from flexsurr.training import fit, split_dataset
 
 STATES = {"state_names": ("q", "p"), "state_units": ("1", "1")}
-INTEGRATOR = Integrator(method="dop853_fixed", step_s=0.01)
+INTEGRATOR = Integrator(method="rk4", step_s=0.005)
 NETWORK = {"hidden": (3,), "activation": "squareplus", "epochs": 300, "patience": 40}
 PAIR = {name: {"column": name, "unit": "1", "derivative": f"d{name}_dt"} for name in ("q", "p")}
 COLUMNS = Columns.model_validate({"trajectory": "trajectory", "pairs": [PAIR]})

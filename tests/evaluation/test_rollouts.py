@@ -26,7 +26,7 @@ from flexsurr.surrogates import PolynomialHamiltonian, compiled
 from flexsurr.surrogates.scaling import Scaling
 
 NAMES, UNITS = ("q", "p"), ("m", "kg m/s")
-SMOOTH = Integrator(method="dop853_fixed", step_s=0.01)
+SMOOTH = Integrator(method="rk4", step_s=0.002)
 SQUARES = np.array([[2, 0], [0, 2]])
 
 

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from closed_form_problems import BLOW_UP, OSCILLATOR, PythonModel, planar
 
 from flexsurr.config.study import Integrator
 from flexsurr.simulation import simulate, simulate_ensemble
+from flexsurr.simulation.closed_form_problems import BLOW_UP, OSCILLATOR, PythonModel, planar
 from flexsurr.simulation.python_kernel import PythonEquations, calls_python
 
 OMEGA = 3.0

@@ -2,12 +2,18 @@
 
 import numpy as np
 import pytest
-from closed_form_problems import OSCILLATOR, PENDULUM, KernelModel, PendulumVariation, planar
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flexsurr.config.study import Integrator
 from flexsurr.simulation import simulate
+from flexsurr.simulation.closed_form_problems import (
+    OSCILLATOR,
+    PENDULUM,
+    KernelModel,
+    PendulumVariation,
+    planar,
+)
 
 METHODS = ["gauss_legendre_4", "gauss_legendre_6"]
 J = np.array([[0.0, 1.0], [-1.0, 0.0]])

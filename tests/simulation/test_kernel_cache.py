@@ -26,11 +26,9 @@ PREFIX = "flexsurr-kernels-"
 EVERY_METHOD = """
 import json
 import numpy as np
-from flexsurr import kernel_cache
-kernel_cache.activate(KERNELS)
-from closed_form_problems import OSCILLATOR, planar
 from flexsurr.config.study import Integrator
 from flexsurr.simulation import adaptive_explicit, fixed_step, radau, simulate
+from flexsurr.simulation.closed_form_problems import OSCILLATOR, planar
 for method in ("rk4", "dop853_fixed", "gauss_legendre_4", "gauss_legendre_6", "dop853", "radau_iia_5"):
     settings = {} if method in ("dop853", "radau_iia_5") else {"step_s": 0.01}
     integrator = Integrator(method=method, **settings)
@@ -102,11 +100,9 @@ def test_the_code_is_there_before_the_index_leads_to_it(tmp_path, monkeypatch):
 
 ONE_METHOD = """
 import numpy as np
-from flexsurr import kernel_cache
-kernel_cache.activate(KERNELS)
-from closed_form_problems import OSCILLATOR, planar
 from flexsurr.config.study import Integrator
 from flexsurr.simulation import fixed_step, simulate
+from flexsurr.simulation.closed_form_problems import OSCILLATOR, planar
 method = Integrator(method=METHOD, step_s=0.01)
 assert simulate(planar(OSCILLATOR, 1.0), np.array([0.0, 1.0]), np.ones(2), method).completed
 print(sum(fixed_step.run_fixed_step.stats.cache_misses.values()))
@@ -114,9 +110,7 @@ print(sum(fixed_step.run_fixed_step.stats.cache_misses.values()))
 
 
 def one_method(name):
-    return ONE_METHOD.replace("KERNELS", repr(str(HERE / "closed_form_problems.py"))).replace(
-        "METHOD", repr(name)
-    )
+    return ONE_METHOD.replace("METHOD", repr(name))
 
 
 def test_of_two_processes_that_need_the_same_code_one_compiles_it(tmp_path):
@@ -194,9 +188,8 @@ def test_without_locks_each_compiles_for_itself(tmp_path, monkeypatch):
 
 
 def test_the_next_process_compiles_nothing():
-    code = EVERY_METHOD.replace("KERNELS", repr(str(HERE / "closed_form_problems.py")))
-    run(code, HERE)
-    assert json.loads(run(code, HERE)) == {"hits": 6, "misses": 0}
+    run(EVERY_METHOD)
+    assert json.loads(run(EVERY_METHOD)) == {"hits": 6, "misses": 0}
 
 
 def test_an_edit_of_equations_takes_effect(tmp_path):

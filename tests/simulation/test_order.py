@@ -4,7 +4,11 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from closed_form_problems import (
+
+from flexsurr.config.study import Integrator
+from flexsurr.simulation import simulate
+from flexsurr.simulation.adaptive_explicit import _interpolate
+from flexsurr.simulation.closed_form_problems import (
     FORCED,
     OSCILLATOR,
     PULSED,
@@ -13,10 +17,6 @@ from closed_form_problems import (
     planar,
     pulsed_solution,
 )
-
-from flexsurr.config.study import Integrator
-from flexsurr.simulation import simulate
-from flexsurr.simulation.adaptive_explicit import _interpolate
 from flexsurr.simulation.rhs import evaluate
 from flexsurr.simulation.unrolled import dop853_dense, dop853_step
 

@@ -2,7 +2,12 @@
 
 import numpy as np
 import pytest
-from closed_form_problems import (
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from flexsurr.config.study import Integrator
+from flexsurr.simulation import CompiledModel, Model, simulate
+from flexsurr.simulation.closed_form_problems import (
     BLOW_UP,
     BREAKS_OFF,
     FORCED,
@@ -13,11 +18,6 @@ from closed_form_problems import (
     planar,
     pulsed_solution,
 )
-from hypothesis import given, settings
-from hypothesis import strategies as st
-
-from flexsurr.config.study import Integrator
-from flexsurr.simulation import CompiledModel, Model, simulate
 
 COMPILED = [
     Integrator(method="rk4", step_s=1e-3),

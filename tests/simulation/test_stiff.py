@@ -2,7 +2,10 @@
 
 import numpy as np
 import pytest
-from closed_form_problems import (
+
+from flexsurr.config.study import Integrator
+from flexsurr.simulation import evaluate, simulate
+from flexsurr.simulation.closed_form_problems import (
     DECAY,
     PROTHERO_ROBINSON,
     VAN_DER_POL,
@@ -12,9 +15,6 @@ from closed_form_problems import (
     evaluate_jacobian,
     planar,
 )
-
-from flexsurr.config.study import Integrator
-from flexsurr.simulation import evaluate, simulate
 
 
 @pytest.mark.parametrize("stiffness", [1e1, 1e4, 1.8e7, 1e9])

@@ -156,12 +156,14 @@ PORT_HAMILTONIANS = {
     "one pair": port_polynomial(2, 3, even=False),
     "even": port_polynomial(6, 4, even=True),
     "odd and even": port_polynomial(6, 3, even=False),
-    "network of one pair": port_network(2, 5, "half_log"),
+    "network of one pair": port_network(2, 5, "softplus"),
     "network": port_network(6, 7, "softplus"),
     "even network": port_network(6, 5, "softplus", even=True),
-    "entries": port_network(6, 5, "atan", factored=False),
-    "even entries": port_network(6, 5, "tanh", even=True, factored=False),
+    "entries": port_network(6, 5, "softplus", factored=False),
+    "even entries": port_network(6, 5, "softplus", even=True, factored=False),
     "sparse": sparse_polynomial(),
     "mirrored": mirrored_network(5, "atan"),
 }
+"""Networks of one activation, so that all have the machine code of one kernel."""
+
 NETWORKS = {"hnn": HNN, "mlp": MLP, "dissipative_hnn": DissipativeHNN}

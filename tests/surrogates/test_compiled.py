@@ -1,5 +1,7 @@
 """The compiled forms are the NumPy ones to rounding."""
 
+from itertools import cycle
+
 import numpy as np
 import pytest
 from random_surrogates import HAMILTONIANS, NETWORKS, PORT_HAMILTONIANS, network
@@ -33,9 +35,11 @@ def test_port_hamiltonians(name):
     assert_same(PORT_HAMILTONIANS[name])
 
 
-@pytest.mark.parametrize("architecture", ["hnn", "mlp"])
-@pytest.mark.parametrize("activation", ACTIVATIONS)
-def test_activations(architecture, activation):
+@pytest.mark.parametrize(
+    ("activation", "architecture"), zip(ACTIVATIONS, cycle(("hnn", "mlp")), strict=False)
+)
+def test_activations(activation, architecture):
+    """With one architecture each, for to compile it takes seconds; what they compute: test_operations.py."""
     assert_same(network(NETWORKS[architecture], 2, (12,), activation))
 
 

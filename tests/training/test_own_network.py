@@ -270,7 +270,7 @@ def test_a_hamiltonian_of_ones_own_is_conserved(project):
         compiled(surrogate),
         np.linspace(0.0, 0.2, 21),
         DATASET.x_train[0],
-        Integrator(method="dop853", rtol=1e-10, atol=1e-12),
+        Integrator(method="scipy_dop853", rtol=1e-10, atol=1e-12),
     )
     energy = surrogate.energy(trajectory.x)
     assert np.ptp(energy) < 1e-7 * np.abs(energy).max()

@@ -36,7 +36,7 @@ def test_three_states_are_learned_kept_and_stepped(tmp_path):
     save(surrogate, tmp_path / "weights.npz")
     again = compiled(load(tmp_path / "weights.npz"))
     trajectory = simulate(
-        again, np.linspace(0.0, 0.2, 21), start, Integrator(method="dop853", rtol=1e-8, atol=1e-8)
+        again, np.linspace(0.0, 0.2, 21), start, Integrator(method="scipy_dop853", rtol=1e-8, atol=1e-8)
     )
     assert trajectory.completed
     np.testing.assert_allclose(

@@ -136,7 +136,7 @@ def test_a_sweep_of_which_no_trial_finishes_ends_with_tables_that_say_so(copy_of
     space = {"architecture": "hnn", "hidden": [[6]], "activation": ["half_log"], "give_up": [rule]}
     for sweep in (SWEEP, "config/sweeps/quick_data_free.yaml"):
         copy_of_quick.change(sweep, "spaces", [space])
-    copy_of_quick.change(QUICK, f"{OVER}.variants", ["hamiltonian"])  # one is as good as two, in half the time
+    copy_of_quick.change(QUICK, f"{OVER}.variants", ["hamiltonian"])  # one, in half the time
     copy_of_quick.run_well(BEAM)
     tables = copy_of_quick.results / "tables" / BEAM
     sweeps = pd.read_csv(tables / "sweeps.csv")

@@ -1,6 +1,7 @@
-"""Problems with known solutions, as models and kernels.
+"""Problems with known solutions, as models and kernels: what integrators are held against.
 
-A module of its own, so that code compiled for these kernels can be kept on disk.
+They lie in the package since machine code is kept by its sources: with kernels from outside, whoever steps
+these would have every other kernel compiled once more.
 """
 
 from collections.abc import Callable
@@ -10,11 +11,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import njit
 
-from flexsurr.simulation import Array, evaluate, implements_jacobian, implements_rhs, jacobian
+from flexsurr.simulation.jacobian import implements_jacobian, jacobian
+from flexsurr.simulation.rhs import Array, ByKernel, implements_rhs
 
 
 @dataclass(frozen=True)
-class KernelModel:
+class KernelModel(ByKernel):
     """A compiled model made of nothing but a kernel."""
 
     kernel: Any
@@ -24,21 +26,18 @@ class KernelModel:
 
     @property
     def state_names(self) -> tuple[str, ...]:
+        """x_0, x_1, …"""
         return tuple(f"x_{i}" for i in range(self.states))
 
     @property
     def state_units(self) -> tuple[str, ...]:
+        """Without dimensions."""
         return ("1",) * self.states
-
-    def derivative(self, t: float, x: Array) -> Array:
-        dx = np.empty(self.states)
-        evaluate(self.kernel, float(t), np.ascontiguousarray(x), dx, np.empty(self.work_size))
-        return dx
 
 
 @dataclass(frozen=True)
 class PythonModel:
-    """A model that has no compiled form."""
+    """A model that has no compiled form: ẋ = function(t, x)."""
 
     function: Callable[[float, Array], Array]
     states: int = 1
@@ -46,13 +45,16 @@ class PythonModel:
 
     @property
     def state_names(self) -> tuple[str, ...]:
+        """x_0, x_1, …"""
         return tuple(f"x_{i}" for i in range(self.states))
 
     @property
     def state_units(self) -> tuple[str, ...]:
+        """Without dimensions."""
         return ("1",) * self.states
 
     def derivative(self, t: float, x: Array) -> Array:
+        """The rates at time t [s]."""
         return self.function(t, x)
 
 
@@ -94,6 +96,7 @@ def _planar(kernel, t, x, dx, work):
 
 
 def planar(problem: int, a: float = 0.0, b: float = 0.0, breakpoints: tuple[float, ...] = ()) -> KernelModel:
+    """One of the problems above, with its two constants."""
     return KernelModel(Planar(problem, a, b), 2, breakpoints)
 
 
@@ -144,4 +147,5 @@ def _van_der_pol_jacobian(kernel, t, x, dx, jac, work):
 
 @njit(cache=True)
 def evaluate_jacobian(kernel, t, x, dx, jac, work):
+    """`jacobian` as a call from Python."""
     return jacobian(kernel, t, x, dx, jac, work)
