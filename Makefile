@@ -81,9 +81,10 @@ smoke: $(INSTALLED)
 		--config results=results-smoke -- \
 		results-smoke/tables/cost.csv results-smoke/figures/cantilever/figure_11.svg
 
-# A file of tests stays on one core; those that take long come first (tests/conftest.py).
+# A file of tests stays in one process; those that take long come first (tests/conftest.py). There is a process
+# more than cores, for some of them wait: for Slurm, for servers, for a browser.
 test: check browser postgresql slurm compiler
-	OMP_NUM_THREADS=1 python -m pytest -n logical --dist loadfile --no-loadscope-reorder tests
+	OMP_NUM_THREADS=1 python -m pytest -n $$(($$(nproc) + 1)) --dist loadfile --no-loadscope-reorder tests
 
 # numba's machine code is not seen: the equations of kernels count as missed, and other tests hold them.
 coverage: $(INSTALLED)

@@ -25,15 +25,16 @@ def root(tmp_path: Path) -> Path:
 
 LONG = (
     "workflow/test_slurm.py",
-    "workflow/test_whole.py",
-    "workflow/test_interruptions.py",
-    "workflow/test_many.py",
-    "workflow/test_own_data.py",
     "docs/test_tutorial.py",
+    "workflow/test_own_data.py",
+    "workflow/test_study_of_the_tapered_wing.py",
+    "workflow/test_numbers_of_modes.py",
+    "workflow/test_interruptions.py",
+    "workflow/test_changes.py",
     "workflow",
     "tracking/test_servers.py",
 )
-"""What takes a minute or more, the longest first."""
+"""What takes long: the first makes the quick preset, and those after it have no need of that."""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
