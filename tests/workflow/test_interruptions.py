@@ -23,7 +23,7 @@ spaces:
     hidden: [[8]]
     activation: [tanh]
     optimiser: [adam]
-    epochs: [20000]
+    epochs: [12000]
     batch_size: [8]
     learning_rate: [1.0e-3]
 """
