@@ -35,9 +35,7 @@ def test_port_hamiltonians(name):
     assert_same(PORT_HAMILTONIANS[name])
 
 
-@pytest.mark.parametrize(
-    ("activation", "architecture"), zip(ACTIVATIONS, cycle(("hnn", "mlp")), strict=False)
-)
+@pytest.mark.parametrize(("activation", "architecture"), [*zip(ACTIVATIONS, cycle(("hnn", "mlp")))])
 def test_activations(activation, architecture):
     """With one architecture each, for to compile it takes seconds; what they compute: test_operations.py."""
     assert_same(network(NETWORKS[architecture], 2, (12,), activation))
