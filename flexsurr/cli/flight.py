@@ -2,7 +2,6 @@
 
 import logging
 from collections.abc import Mapping
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +21,7 @@ from flexsurr.evaluation.airliner_cost import (
     exceedance_summary,
     fly_all,
 )
-from flexsurr.evaluation.airliner_flights import Flight, flown, outputs, random_flights
+from flexsurr.evaluation.airliner_flights import Flight, flown, outputs
 from flexsurr.evaluation.airliner_models import (
     ONE_MACH,
     REFERENCE,
@@ -33,12 +32,13 @@ from flexsurr.evaluation.airliner_models import (
 )
 from flexsurr.evaluation.airliner_modes import airliner_modes, left_out_modes
 from flexsurr.evaluation.airliner_modes import elastic_modes as what_modes_are
+from flexsurr.evaluation.airliner_references import reference_flights
 from flexsurr.evaluation.columns import ACCURACY_COLUMNS
 from flexsurr.evaluation.timing import measuring
 from flexsurr.flight.trim import TrimNotFound, trim, trim_envelope
 from flexsurr.simulation.mapping import CompiledMapping
 from flexsurr.storage import StorageError, read_all_samples, read_json
-from flexsurr.storage.frames import write_frame
+from flexsurr.storage.frames import read_frame, write_frame
 from flexsurr.surrogates import NetworkMap, load_map
 from flexsurr.training.map_data import accuracy as accuracy_of
 from flexsurr.training.map_data import held_out_errors, map_data
@@ -186,9 +186,16 @@ def fly(
     write_frame(trims, pd.DataFrame(rows))
 
 
+@for_rules(TrimNotFound, output="time histories")
+def fly_references(job: Job, output: Path) -> None:
+    """Fly the random flights with the frozen lattice, which other aerodynamics are held against."""
+    write_frame(output, reference_flights(airliner_of(job), job["boundary_condition"]))
+
+
 @for_rules(
     TrimNotFound,
     **SELECTED,
+    references="time histories with the frozen lattice",
     flights="one row a flight and model",
     exceedances="one row a flight and input",
     cost="one row a model",
@@ -199,6 +206,7 @@ def fly_randomly(
     job: Job,
     selection: Path,
     runs: Path,
+    references: Path,
     flights: Path,
     exceedances: Path,
     cost: Path,
@@ -223,9 +231,7 @@ def fly_randomly(
         flown, left = fly_all(
             airliner,
             forms,
-            random_flights(
-                airliner.settings, airliner.limits, partial(_has_trim, airliner, compiled[REFERENCE])
-            ),
+            read_frame(references),
             None if network is None else (network.inputs.low, network.inputs.high),
             None if network is None else TorchMap(network),
         )
@@ -240,11 +246,3 @@ def fly_randomly(
     write_frame(cost, table)
     write_frame(rows, as_cost_rows(table, job["boundary_condition"], airliner.settings.step_s))
     write_frame(limits, exceedance_summary(left))
-
-
-def _has_trim(airliner: Airliner, lattice: CompiledMapping, condition: FlightCondition) -> bool:
-    try:
-        trim(airliner.flying(lattice), condition, airliner.settings.limits)
-    except TrimNotFound:
-        return False
-    return True

@@ -28,7 +28,7 @@ FOR_RULES = {
         "rollouts",
         "rollout-cost",
     ),
-    "flight": ("accuracy", "fly", "fly-randomly"),
+    "flight": ("accuracy", "fly", "fly-references", "fly-randomly"),
     "report": ("draw", "tabulate", "join", "answer"),
     "tracking": ("store",),
 }

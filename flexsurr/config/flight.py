@@ -76,6 +76,8 @@ class RandomFlights(Record):
     """
     rebuild_flights: Count = 3
     """Of these, how many are flown with a lattice that is rebuilt at every call, the dearest baseline."""
+    frozen_flights: Count = 6
+    """Of these, on how many the lattice with frozen matrices is timed. All are flown with it, for errors."""
     repeats: Count = 3
     """How often each flight of a fast model is timed; the median counts."""
     seed: Annotated[int, Field(ge=0)] = 2024

@@ -1,7 +1,8 @@
 """What a flight costs with the network and with each form of the lattice, and how far they fly apart."""
 
 import logging
-from collections.abc import Callable, Mapping, Sequence
+import math
+from collections.abc import Callable, Mapping
 from functools import partial
 
 import numpy as np
@@ -13,10 +14,14 @@ from flexsurr.evaluation.airliner_flights import (
     EXCEEDANCE_COLUMNS,
     MOVED,
     Flight,
+    described,
+    flights_in,
     flown,
     flown_stepped,
     inputs_along,
     limit_exceedances,
+    outputs,
+    outputs_in,
     peak_errors,
 )
 from flexsurr.evaluation.airliner_models import ONE_MACH, REFERENCE, Airliner
@@ -47,28 +52,38 @@ PAPER_PERCENT: dict[str, tuple[float, float]] = {NETWORK: (0.995, 0.025), TORCH:
 def fly_all(
     airliner: Airliner,
     aerodynamics: Mapping[str, CompiledMapping | OfEachFlight],
-    flights: Sequence[Flight],
+    references: pd.DataFrame,
     limits: tuple[Array, Array] | None = None,
     in_torch: Coefficients | None = None,
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """Time every flight with every aerodynamics, and compare its outputs with those of `REFERENCE`.
+    """Time the flights of `references` with every aerodynamics; compare their outputs with `REFERENCE`'s.
 
-    Each flies from its own trim. The rebuilt lattice flies the first few only, as the settings say. A flight
+    Each flies from its own trim. The lattices, which are dear, are timed on the first few flights, as the
+    settings say; `references` (`reference_flights`) knows how the frozen ones fly the others. A flight
     without a trim is left out, and the log says so. An aerodynamics may be a function that makes it for each
     flight. `in_torch` flies as `TORCH` from the trim of the network. `limits` are those of its training.
 
-    First frame, a row per model and flight: model, flight, control, mach, altitude_m, amplitude_deg, wall_s,
-    aerodynamics_percent (the share of the aerodynamics in it, of the first few flights), completed, and for
-    each output that the doublet moves <output>_error_percent. Second: `limit_exceedances` of the flights
-    with the network.
+    First frame, a row per model and flight: model, flight, control, mach, altitude_m, amplitude_deg, wall_s
+    (NaN where it is not timed), aerodynamics_percent (the share of the aerodynamics in it, of the first few
+    flights), completed, and for each output that the doublet moves <output>_error_percent. Second:
+    `limit_exceedances` of the flights with the network.
     """
+    random = airliner.settings.random_flights
+    fewer = {
+        REBUILT: random.rebuild_flights,
+        REFERENCE: random.frozen_flights,
+        ONE_MACH: random.frozen_flights,
+    }
+    flights, known = flights_in(references), outputs_in(references)
     rows: list[dict[str, object]] = []
     exceedances: list[pd.DataFrame] = []
     for place, flight in enumerate(flights):
-        first_few = place < airliner.settings.random_flights.rebuild_flights
-        flown_by: dict[str, tuple[Trim, Trajectory]] = {}
+        exact = known[REFERENCE, flight.number]
+        with_share = place < random.rebuild_flights
         for model, form in aerodynamics.items():
-            if model == REBUILT and not first_few:
+            if place >= fewer.get(model, len(flights)):
+                if (model, flight.number) in known:
+                    rows.append(_row(model, flight, known[model, flight.number], exact))
                 continue
             mapping = form if isinstance(form, CompiledMapping) else form(flight.condition)
             try:
@@ -76,34 +91,47 @@ def fly_all(
             except TrimNotFound as error:
                 log.warning("flight %d, %s: %s", flight.number, model, error)
                 continue
-            row, trajectory = _timed(model, start, flight, airliner.settings, flown, mapping, first_few)
-            flown_by[model] = start, trajectory
-            rows.append(row)
-        if in_torch is not None and NETWORK in flown_by:
-            start, _ = flown_by[NETWORK]
-            stepped = partial(flown_stepped, coefficients=in_torch)
-            row, trajectory = _timed(TORCH, start, flight, airliner.settings, stepped, in_torch, first_few)
-            flown_by[TORCH] = start, trajectory
-            rows.append(row)
-        for row in rows[-len(flown_by) :] if REFERENCE in flown_by else []:
-            if (model := str(row["model"])) != REFERENCE:
-                pair = flown_by[REFERENCE][1], flown_by[model][1]
-                errors = peak_errors(*pair, MOVED[flight.control])
-                row.update({f"{name}_error_percent": error for name, error in errors.items()})
-        if limits is not None and NETWORK in flown_by:
-            start, trajectory = flown_by[NETWORK]
-            exceedances.append(limit_exceedances(start, flight, trajectory, airliner.settings, *limits))
+            trajectory, *times = _timed(model, start, flight, airliner.settings, flown, mapping, with_share)
+            rows.append(_row(model, flight, outputs(trajectory), exact, *times))
+            if model == NETWORK and in_torch is not None:
+                stepped = partial(flown_stepped, coefficients=in_torch)
+                before, *times = _timed(
+                    TORCH, start, flight, airliner.settings, stepped, in_torch, with_share
+                )
+                rows.append(_row(TORCH, flight, outputs(before), exact, *times))
+            if model == NETWORK and limits is not None:
+                exceedances.append(limit_exceedances(start, flight, trajectory, airliner.settings, *limits))
         log.info(
-            "flight %d of %d: %s of %.1f deg at Mach %.3f, %d aerodynamics",
+            "flight %d of %d: %s of %.1f deg at Mach %.3f",
             place + 1,
             len(flights),
             flight.control,
             flight.amplitude_deg,
             flight.condition.mach,
-            len(flown_by),
         )
     none = pd.DataFrame(columns=EXCEEDANCE_COLUMNS)
     return pd.DataFrame(rows), pd.concat(exceedances, ignore_index=True) if exceedances else none
+
+
+def _row(
+    model: str,
+    flight: Flight,
+    found: Mapping[str, Array],
+    exact: Mapping[str, Array],
+    wall_s: float = math.nan,
+    aerodynamics_percent: float = math.nan,
+) -> dict[str, object]:
+    """The row of a flight with the outputs `found`."""
+    names = MOVED[flight.control]
+    errors = {} if model == REFERENCE else peak_errors(exact, found, names)
+    return {
+        "model": model,
+        **described(flight),
+        "wall_s": wall_s,
+        "aerodynamics_percent": aerodynamics_percent,
+        "completed": len(found[names[0]]) == len(exact[names[0]]),
+        **{f"{name}_error_percent": error for name, error in errors.items()},
+    }
 
 
 def _timed(
@@ -114,30 +142,19 @@ def _timed(
     fly: Callable[[Trim, Flight, FlightSettings], Trajectory],
     coefficients: Coefficients,
     with_share: bool,
-) -> tuple[dict[str, object], Trajectory]:
-    """The row of a flight, and its trajectory."""
+) -> tuple[Trajectory, float, float]:
+    """A flight, its wall time [s], and the share of the aerodynamics in it [%], NaN unless asked for."""
     repeats = 1 if model in SLOW else settings.random_flights.repeats
     if with_share:  # a single step loads or compiles what the timed flights use
         fly(start, flight, settings.model_copy(update={"duration_s": settings.step_s}))
     trajectory, wall_s = wall_time(partial(fly, start, flight, settings), repeats)
-    row = {
-        "model": model,
-        "flight": flight.number,
-        "control": flight.control,
-        "mach": flight.condition.mach,
-        "altitude_m": flight.condition.altitude_m,
-        "amplitude_deg": flight.amplitude_deg,
-        "wall_s": wall_s,
-        "aerodynamics_percent": float("nan"),
-        "completed": trajectory.completed,
-    }
-    if with_share:
-        inputs = inputs_along(start, flight, trajectory, settings)
-        coefficients(inputs[0])
-        once = partial(_one_by_one, coefficients, inputs) if model == TORCH else partial(coefficients, inputs)
-        _, spent_s = wall_time(once, repeats)
-        row["aerodynamics_percent"] = 100.0 * spent_s * trajectory.evaluations / len(inputs) / wall_s
-    return row, trajectory
+    if not with_share:
+        return trajectory, wall_s, math.nan
+    inputs = inputs_along(start, flight, trajectory, settings)
+    coefficients(inputs[0])
+    once = partial(_one_by_one, coefficients, inputs) if model == TORCH else partial(coefficients, inputs)
+    _, spent_s = wall_time(once, repeats)
+    return trajectory, wall_s, 100.0 * spent_s * trajectory.evaluations / len(inputs) / wall_s
 
 
 def _one_by_one(coefficients: Coefficients, inputs: Array) -> None:
@@ -148,13 +165,13 @@ def _one_by_one(coefficients: Coefficients, inputs: Array) -> None:
 def airliner_cost(flights: pd.DataFrame) -> pd.DataFrame:
     """One row per model: simulations, wall_s_mean, wall_s_std, relative_to_<baseline>_percent and its spread.
 
-    Relative costs are means over the flights that both have flown; where the baseline has flown fewer
-    (`<baseline>_flights`), its mean stands for the rest: every flight has the same steps. worst_error_percent
-    is the worst of all outputs and flights, median_error_percent the median flight's worst output.
+    Relative costs are means over the flights on which both have been timed; where the baseline has been timed
+    on fewer (`<baseline>_flights`), its mean stands for the rest: every flight has the same steps.
+    worst_error_percent is the worst of all outputs and flights, median_error_percent the median flight's.
     aerodynamics_percent is the mean share of the aerodynamics in the wall time, paper_percent what the paper
     has for the network over the rebuilt lattice.
     """
-    finished = flights[flights["completed"]]
+    finished = flights[flights["completed"] & flights["wall_s"].notna()]
     walls = {str(model): group.set_index("flight")["wall_s"] for model, group in finished.groupby("model")}
     errors = [column for column in flights.columns if column.endswith("_error_percent")]
     rows = []

@@ -1,6 +1,6 @@
 """Flights of the airliner by which models are compared: what they are, what they give, how far apart."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -108,21 +108,60 @@ def outputs(trajectory: Trajectory) -> dict[str, Array]:
 
 
 def peak_errors(
-    reference: Trajectory, other: Trajectory, names: Sequence[str] | None = None
+    exact: Mapping[str, Array], found: Mapping[str, Array], names: Sequence[str]
 ) -> dict[str, float]:
-    """Largest difference of each output over the reference's largest change from its start [%].
+    """Largest difference of `outputs` over the largest change of the `exact` ones from their start [%].
 
     NaN where the other flight ended early, or where the reference does not change.
     """
-    exact, found = outputs(reference), outputs(other)
     errors = {}
-    for name in names or tuple(exact):
+    for name in names:
         peak = float(np.abs(exact[name] - exact[name][0]).max())
         if len(found[name]) != len(exact[name]) or peak == 0.0:
             errors[name] = float("nan")
             continue
         errors[name] = 100.0 * float(np.abs(found[name] - exact[name]).max()) / peak
     return errors
+
+
+DESCRIBED = ("flight", "control", "mach", "altitude_m", "amplitude_deg")
+COMPARED = (*LONGITUDINAL, *LATERAL)
+
+
+def described(flight: Flight) -> dict[str, object]:
+    """The flight in the columns `DESCRIBED`."""
+    condition = flight.condition
+    return dict(
+        zip(
+            DESCRIBED,
+            (flight.number, flight.control, condition.mach, condition.altitude_m, flight.amplitude_deg),
+            strict=True,
+        )
+    )
+
+
+def history(model: str, flight: Flight, trajectory: Trajectory) -> pd.DataFrame:
+    """A flight over time: model, `DESCRIBED`, and the outputs `COMPARED`."""
+    compared = {name: values for name, values in outputs(trajectory).items() if name in COMPARED}
+    return pd.DataFrame({"model": model, **described(flight), **compared})
+
+
+def flights_in(histories: pd.DataFrame) -> list[Flight]:
+    """The flights that `histories` are of, in their order."""
+    rows = histories[list(DESCRIBED)].drop_duplicates()
+    return [
+        Flight(number, control, FlightCondition(mach=mach, altitude_m=altitude), amplitude)
+        for number, control, mach, altitude, amplitude in rows.itertuples(index=False)
+    ]
+
+
+def outputs_in(histories: pd.DataFrame) -> dict[tuple[str, Hashable], dict[str, Array]]:
+    """The outputs `COMPARED` by model and number of the flight."""
+    return {
+        (str(model), number): {name: one[name].to_numpy() for name in COMPARED}
+        for model, of_model in histories.groupby("model")
+        for number, one in of_model.groupby("flight")
+    }
 
 
 EXCEEDANCE_COLUMNS = ("flight", "control", "input", "samples", "outside", "worst")

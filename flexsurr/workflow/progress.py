@@ -27,6 +27,7 @@ TYPICAL_S = {
     "rehearse": 40.0,
     "evaluate": 45.0,
     "fly": 20.0,
+    "fly_references": 240.0,
     "fly_randomly": 90.0,
     "draw": 4.0,
 }

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from flexsurr.aerodynamics.features import COEFFICIENTS
-from flexsurr.cli.flight import accuracy, fly, fly_randomly
+from flexsurr.cli.flight import accuracy, fly, fly_randomly, fly_references
 from flexsurr.cli.samples import sample
 from flexsurr.cli.scoring import score_map, select
 from flexsurr.cli.tracking import store
@@ -118,7 +118,9 @@ def test_without_a_network_that_finished_the_lattice_flies_alone(results, withou
     assert modes["surrogate_real"].isna().all()
     names = ("flights", "exceedances", "cost", "rows", "limits")
     made = [tmp_path / f"{name}.parquet" for name in names]
-    fly_randomly(PLAN.fly(), without_networks, results / "runs", *made)
+    references = tmp_path / "references.parquet"
+    fly_references(PLAN.fly(), references)
+    fly_randomly(PLAN.fly(), without_networks, results / "runs", references, *made)
     rows = cost(pd.read_parquet(tmp_path / "rows.parquet"))
     assert set(rows["model"]) == {"vlm_rebuild", "vlm_frozen", "vlm_frozen_one_mach", "quadratic"}
     assert len(pd.read_parquet(tmp_path / "limits.parquet")) == 0

@@ -19,14 +19,18 @@ from flexsurr.evaluation.airliner_cost import (
 from flexsurr.evaluation.airliner_flights import (
     MOVED,
     Flight,
+    flights_in,
     flown,
+    history,
     limit_exceedances,
     outputs,
+    outputs_in,
     peak_errors,
     random_flights,
 )
-from flexsurr.evaluation.airliner_models import REFERENCE, Airliner
+from flexsurr.evaluation.airliner_models import ONE_MACH, REFERENCE, Airliner, lattices
 from flexsurr.evaluation.airliner_modes import airliner_modes, elastic_modes, left_out_modes
+from flexsurr.evaluation.airliner_references import reference_flights
 from flexsurr.evaluation.columns import COST_COLUMNS, MODE_COLUMNS
 from flexsurr.flight.airliner import flexible_airframe
 from flexsurr.flight.linear_aerodynamics import linear_aerodynamics
@@ -42,7 +46,8 @@ LIMITS = load_feature_limits(Path(__file__).resolve().parents[2] / "config/aircr
 @pytest.fixture(scope="module")
 def airliner(gnba_modes):
     settings = FlightSettings(
-        duration_s=1.0, random_flights=RandomFlights(of_each_doublet=1, rebuild_flights=1)
+        duration_s=1.0,
+        random_flights=RandomFlights(of_each_doublet=1, rebuild_flights=1, frozen_flights=2),
     )
     coarse = PanelCounts(wing=(10, 2), horizontal_tail=(4, 2), vertical_tail=(4, 2))
     return Airliner(settings, LIMITS, gnba_modes, flexible_airframe(gnba_modes, coarse))
@@ -57,6 +62,13 @@ def surrogate(gnba_derivatives):
 @pytest.fixture(scope="module")
 def trims(airliner, gnba_derivatives, surrogate):
     return [trim(airliner.flying(mapping), CRUISE) for mapping in (gnba_derivatives, surrogate)]
+
+
+def references(airliner, aerodynamics, flights):
+    """What `reference_flights` would have with other aerodynamics."""
+    starts = [trim(airliner.flying(aerodynamics), flight.condition) for flight in flights]
+    runs = [flown(start, flight, airliner.settings) for start, flight in zip(starts, flights, strict=True)]
+    return pd.concat([history(REFERENCE, *pair) for pair in zip(flights, runs, strict=True)])
 
 
 def anywhere(condition: FlightCondition) -> bool:
@@ -92,15 +104,33 @@ def test_conditions_without_a_trim_are_drawn_anew():
 
 def test_a_flight_is_its_own_reference_and_errors_are_in_percent_of_the_peak(airliner, trims):
     exact, found = (flown(start, Flight(0, "elevator", CRUISE, 3.0), airliner.settings) for start in trims)
-    assert set(peak_errors(exact, exact, MOVED["elevator"]).values()) == {0.0}
-    errors = peak_errors(exact, found, MOVED["elevator"])
+    names = MOVED["elevator"]
+    assert set(peak_errors(outputs(exact), outputs(exact), names).values()) == {0.0}
+    errors = peak_errors(outputs(exact), outputs(found), names)
+    assert tuple(errors) == names
     q = np.degrees(exact.x[:, 10])
     assert errors["q_deg_s"] == pytest.approx(
         100.0 * np.abs(np.degrees(found.x[:, 10]) - q).max() / np.abs(q - q[0]).max()
     )
     assert 0.0 < errors["q_deg_s"] < 10.0
-    assert np.isnan(peak_errors(exact, exact, ["p_deg_s"])["p_deg_s"]) or np.abs(exact.x[:, 9]).max() > 0.0
+    still = {"p_deg_s": np.zeros(3)}
+    assert np.isnan(peak_errors(still, still, ["p_deg_s"])["p_deg_s"])
+    assert np.isnan(peak_errors(outputs(exact), {"q_deg_s": np.zeros(2)}, ["q_deg_s"])["q_deg_s"])
     assert outputs(exact)["airspeed_m_s"][0] == pytest.approx(np.linalg.norm(exact.x[0, 6:9]))
+
+
+def test_what_is_written_of_flights_tells_them_and_what_they_are_compared_by(airliner, trims):
+    flights = [Flight(4, "rudder", CRUISE, -1.3), Flight(0, "elevator", CRUISE, 3.0)]
+    runs = [flown(trims[0], flight, airliner.settings) for flight in flights]
+    written = pd.concat([history("a", *pair) for pair in zip(flights, runs, strict=True)])
+    assert flights_in(written) == flights
+    read = outputs_in(written)
+    assert set(read) == {("a", 4), ("a", 0)}
+    for flight, run in zip(flights, runs, strict=True):
+        exact = outputs(run)
+        assert set(read["a", flight.number]) == {name for names in MOVED.values() for name in names}
+        for name, values in read["a", flight.number].items():
+            np.testing.assert_array_equal(values, exact[name])
 
 
 def test_states_beyond_the_limits_of_training_are_counted_for_each_input(airliner, trims):
@@ -154,9 +184,11 @@ def test_costs_are_relative_to_each_lattice_over_the_flights_both_flew(airliner,
     }
     limits = (np.full(25, -1e6), np.full(25, 1e6))
     drawn = random_flights(airliner.settings, LIMITS, lambda condition: condition.mach > 0.65)
-    flights, left = fly_all(airliner, forms, drawn, limits, in_torch=surrogate)
+    flights, left = fly_all(airliner, forms, references(airliner, gnba_derivatives, drawn), limits, surrogate)
     number = {REFERENCE: 3, "network": 3, TORCH: 3, "vlm_rebuild": 1}
     assert flights["model"].value_counts().to_dict() == number
+    timed = flights[flights["wall_s"].notna()]
+    assert timed["model"].value_counts().to_dict() == number | {REFERENCE: 2}
     assert flights["completed"].all()
     assert left["outside"].sum() == 0
     table = airliner_cost(flights)
@@ -166,9 +198,13 @@ def test_costs_are_relative_to_each_lattice_over_the_flights_both_flew(airliner,
     assert rows["relative_to_described_percent"].tolist() == table["relative_to_vlm_rebuild_percent"].tolist()
     cost = table.set_index("model")
     walls = flights.pivot(index="flight", columns="model", values="wall_s")
-    expected = (100.0 * walls["network"] / walls[REFERENCE]).mean()
+    of_the_frozen = walls[REFERENCE].fillna(walls[REFERENCE].mean())
+    expected = (100.0 * walls["network"] / of_the_frozen).mean()
     assert cost.loc["network", f"relative_to_{REFERENCE}_percent"] == pytest.approx(expected)
     assert cost.loc["network", "vlm_rebuild_flights"] == 1
+    assert cost.loc["network", f"{REFERENCE}_flights"] == 2
+    assert cost.loc[REFERENCE, f"relative_to_{REFERENCE}_percent"] == 100.0
+    assert cost.loc[REFERENCE, "wall_s_mean"] == pytest.approx(walls[REFERENCE].mean())
     everywhere = (100.0 * walls["network"] / walls["vlm_rebuild"].mean()).mean()
     assert cost.loc["network", "relative_to_vlm_rebuild_percent"] == pytest.approx(everywhere)
     assert cost.loc["network", "paper_percent"] == 0.995
@@ -185,10 +221,38 @@ def test_costs_are_relative_to_each_lattice_over_the_flights_both_flew(airliner,
     assert cost.loc["vlm_rebuild", "worst_error_percent"] == 0.0  # the same aerodynamics as the reference
 
 
+def test_a_form_of_the_lattice_that_is_not_timed_errs_all_the_same(airliner, gnba_derivatives, surrogate):
+    flights = [Flight(number, "elevator", CRUISE, 3.0) for number in range(3)]
+    known = references(airliner, gnba_derivatives, flights)
+    known = pd.concat([known, references(airliner, surrogate, flights).assign(model=ONE_MACH)])
+    frame, _ = fly_all(airliner, {ONE_MACH: surrogate}, known)
+    assert frame["wall_s"].notna().tolist() == [True, True, False]
+    assert frame["completed"].all()
+    errors = frame["q_deg_s_error_percent"]
+    assert 0.0 < errors.min() == pytest.approx(errors.max(), rel=1e-9)
+
+
 def test_a_flight_without_a_trim_is_left_out(airliner, gnba_derivatives):
-    nowhere = Flight(0, "rudder", FlightCondition(mach=0.3, altitude_m=11000.0), 2.0)
-    flights, _ = fly_all(airliner, {REFERENCE: gnba_derivatives}, [nowhere])
+    there = Flight(0, "rudder", CRUISE, 2.0)
+    nowhere = replace(there, condition=FlightCondition(mach=0.3, altitude_m=11000.0))
+    known = references(airliner, gnba_derivatives, [there]).assign(mach=0.3, altitude_m=11000.0)
+    assert flights_in(known) == [nowhere]
+    flights, _ = fly_all(airliner, {"network": gnba_derivatives}, known)
     assert flights.empty
+
+
+def test_references_are_every_random_flight_with_both_frozen_lattices_each_from_its_trim(airliner):
+    settings = airliner.settings
+    found = reference_flights(airliner, "exact")
+    flights = flights_in(found)
+    assert [flight.control for flight in flights] == ["elevator", "aileron", "rudder"]
+    assert set(outputs_in(found)) == {(model, n) for model in (REFERENCE, ONE_MACH) for n in range(3)}
+    exact = lattices(airliner, with_rebuild=False)[REFERENCE]
+    for flight in flights:
+        start = trim(airliner.flying(exact), flight.condition, settings.limits)
+        expected = outputs(flown(start, flight, settings))
+        for name, values in outputs_in(found)[REFERENCE, flight.number].items():
+            np.testing.assert_array_equal(values, expected[name])
 
 
 def test_elastic_modes_are_named_by_what_moves_and_numbered_as_in_the_paper(airliner):

@@ -246,7 +246,7 @@ def test_the_full_preset_times_every_baseline_on_every_simulation():
             evaluation.simulations
         }
     flights = p.studies["airliner"].resolved.study.flight.random_flights
-    assert flights.rebuild_flights == 3 * flights.of_each_doublet
+    assert flights.rebuild_flights == flights.frozen_flights == 3 * flights.of_each_doublet
 
 
 def test_the_papers_preset_trains_its_recipes_on_its_data():

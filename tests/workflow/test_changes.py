@@ -167,7 +167,7 @@ def with_its_code(quick, make_project):
         (
             "flexsurr/beam/compiled.py",
             {"shards", "statics", "validation", "manifest", "trials", "responses", "evaluate"},
-            {"accuracy", "fly", "fly_randomly"},
+            {"accuracy", "fly", "fly_references", "fly_randomly"},
         ),
         (
             "flexsurr/evaluation/timing.py",

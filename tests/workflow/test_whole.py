@@ -148,8 +148,8 @@ def test_a_network_of_ones_own_goes_all_the_way(quick):
 def test_every_rule_leaves_a_log(quick):
     logs = {path.relative_to(quick.results / "logs").parts[0] for path in quick.results.glob("logs/**/*.log")}
     assert {"shards", "manifest", "statics", "validation", "trials", "select"} <= logs
-    assert {"accuracy", "fly", "fly_randomly"} <= logs
-    assert {"evaluate", "responses", "draw", "tabulate"} <= logs
+    assert {"accuracy", "fly", "fly_references", "fly_randomly"} <= logs
+    assert {"rehearse", "evaluate", "responses", "draw", "tabulate"} <= logs
 
 
 def test_nothing_half_written_is_left(quick):

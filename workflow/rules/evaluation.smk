@@ -76,6 +76,7 @@ rule rehearse:
         f"{RESULTS}/logs/rehearse/{{study}}-{{variant}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/rehearse/{{study}}-{{variant}}.tsv"
+    priority: 10
     threads: 1
     resources:
         mem_mb=2000,

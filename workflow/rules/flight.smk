@@ -63,10 +63,32 @@ rule fly:
         " --doublets {output.doublets:q} --trims {output.trims:q} > {log:q} 2>&1"
 
 
+rule fly_references:
+    output:
+        f"{RESULTS}/evaluation/{{study}}/reference_flights.parquet",
+    log:
+        f"{RESULTS}/logs/fly_references/{{study}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/fly_references/{{study}}.tsv"
+    priority: 20
+    threads: 1
+    resources:
+        mem_mb=2000,
+        runtime=60,
+    params:
+        job=job("fly", "study"),
+        code=code("fly-references"),
+    message:
+        "random flights of {wildcards.study} with the frozen lattice"
+    shell:
+        "python -m flexsurr fly-references --job {params.job:q} --output {output:q} > {log:q} 2>&1"
+
+
 rule fly_randomly:
     # It measures time, so it asks for every core: nothing else runs beside it.
     input:
         selection=f"{RESULTS}/selected/{{study}}.json",
+        references=rules.fly_references.output,
     output:
         flights=f"{RESULTS}/evaluation/{{study}}/flights.parquet",
         exceedances=f"{RESULTS}/evaluation/{{study}}/exceedances.parquet",
@@ -89,5 +111,5 @@ rule fly_randomly:
         "timing random flights of {wildcards.study}"
     shell:
         "python -m flexsurr fly-randomly --job {params.job:q} --selection {input.selection:q}"
-        " --runs {params.runs:q} --flights {output.flights:q} --exceedances {output.exceedances:q}"
-        " --cost {output.cost:q} --rows {output.rows:q} --limits {output.limits:q} > {log:q} 2>&1"
+        " --runs {params.runs:q} --references {input.references:q} --flights {output.flights:q}"
+        " --exceedances {output.exceedances:q} --cost {output.cost:q} --rows {output.rows:q} --limits {output.limits:q} > {log:q} 2>&1"
