@@ -4,7 +4,9 @@
 #     snakemake --cores 2 --configfile config/presets/quick.yaml
 #
 # Here the configuration is checked and the rules are included; the jobs are planned in
-# flexsurr/workflow/plan.py, and each rule runs one command of flexsurr/cli.
+# flexsurr/workflow/plan.py, and each rule runs one command of flexsurr/cli. Where several jobs could
+# start, the `priority` of their rules says which does: data, then what takes minutes, then the rest;
+# what is timed comes last, for it waits until every core is free.
 
 from pathlib import Path
 

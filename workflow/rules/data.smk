@@ -41,6 +41,7 @@ rule simulate:
         f"{RESULTS}/benchmarks/simulate/{{study}}-{{data}}-{{shard}}.tsv"
     wildcard_constraints:
         data=r"(hamiltonian|as_printed)(-\w+)?|(pseudo_random|sobol)(-linear_in_modes)?",
+    priority: 30
     threads: 1
     resources:
         mem_mb=2000,
@@ -63,6 +64,7 @@ rule shards:
         f"{RESULTS}/logs/shards/{{study}}-{{data}}-{{batch}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/shards/{{study}}-{{data}}-{{batch}}.tsv"
+    priority: 30
     threads: 1
     resources:
         mem_mb=2000,

@@ -33,6 +33,7 @@ rule train:
         f"{RESULTS}/logs/train/{{run_id}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/train/{{run_id}}.tsv"
+    priority: 20
     threads: 1
     resources:
         mem_mb=3000,
@@ -88,6 +89,7 @@ rule trials:
         f"{RESULTS}/logs/trials/{{study}}-{{batch}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/trials/{{study}}-{{batch}}.tsv"
+    priority: 10
     threads: 1
     resources:
         mem_mb=3000,
