@@ -1,7 +1,6 @@
 """What the selected surrogates are worth, and what they cost, beside a reference model or recordings."""
 
 import logging
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -107,40 +106,55 @@ def learn_load(job: Job, manifest: Path, polynomial: Path, network: Path, errors
     write_frame(errors, table)
 
 
-@for_rules(
-    EquilibriumNotFound, ArithmeticError, **SELECTED, loads="learned loads", output="what was rehearsed"
-)
+LOADS = {**SELECTED, "loads": "learned loads"}
+
+
+@for_rules(EquilibriumNotFound, ArithmeticError, **LOADS, output="the rows rehearsed")
 def rehearse(job: Job, selection: Path, runs: Path, loads: list[Path], output: Path) -> None:
-    """Compile what will be timed of one variant, in both responses: arguments are those of `evaluate`."""
+    """Compile what `evaluate` will time, of which it takes what is selected and learned."""
     study, basis = _reduced(job)
-    variant = job["variant"]
-    surrogates = selected_surrogates(selection, variant, runs)
-    under_loads = _under_learned_loads(selection, variant, surrogates, loads)
-    learned: dict[Response, list[Candidate]] = {"free": [], "forced": under_loads}
+    surrogates, learned = _evaluated(job, selection, runs, loads)
     tables = [
-        rehearsed(study, basis, variant, response, surrogates, added) for response, added in learned.items()
+        rehearsed(study, basis, job["variant"], response, surrogates, learned[response])
+        for response in learned
     ]
     write_frame(output, pd.concat(tables, ignore_index=True))
 
 
-@for_rules(EquilibriumNotFound, ArithmeticError, **SELECTED, loads="learned loads", output="the cost table")
-def evaluate(job: Job, selection: Path, runs: Path, loads: list[Path], output: Path) -> None:
+@for_rules(
+    EquilibriumNotFound, ArithmeticError, **LOADS, free="the cost table", forced="the same under loads"
+)
+def evaluate(job: Job, selection: Path, runs: Path, loads: list[Path], free: Path, forced: Path) -> None:
     """Measure time and error of every model, implementation and integrator; alone on the machine.
 
-    `loads` are maps to generalised forces, under which the most accurate surrogate stands in the table once
-    more; the name of the file is added to its own.
+    `loads` are maps to generalised forces, under which the most accurate surrogate stands in the table of
+    forced responses once more; the name of the file is added to its own.
     """
     study, basis = _reduced(job)
     variant = job["variant"]
-    surrogates = selected_surrogates(selection, variant, runs)
-    learned = _under_learned_loads(selection, variant, surrogates, loads)
+    surrogates, learned = _evaluated(job, selection, runs, loads)
     recipes = {
         name: run["architecture"]
         for name, run in selected_runs(selection, variant).items()
         if is_of_the_recipe(run)
     }
-    table = cost_table(job["study"], study, basis, variant, job["response"], surrogates, learned, recipes)
-    write_frame(output, table)
+    responses: dict[Response, Path] = {"free": free, "forced": forced}
+    for response, path in responses.items():
+        more = learned[response]
+        table = cost_table(job["study"], study, basis, variant, response, surrogates, more, recipes)
+        write_frame(path, table)
+
+
+def _evaluated(
+    job: Job, selection: Path, runs: Path, loads: list[Path]
+) -> tuple[dict[str, Any], dict[Response, list[Candidate]]]:
+    """The selected surrogates, and of each response the most accurate of them under the learned `loads`."""
+    variant = job["variant"]
+    surrogates = selected_surrogates(selection, variant, runs)
+    best = most_accurate(selection, variant)
+    maps = {path.stem: load_map(path) for path in loads}
+    learned = [] if best is None else with_learned_loads(best, surrogates[best], maps)
+    return surrogates, {"free": [], "forced": learned}
 
 
 @for_rules(EquilibriumNotFound, ArithmeticError, runs="the folder of all runs", output="the table")
@@ -213,15 +227,6 @@ def rollout_cost(job: Job, selection: Path, runs: Path, manifest: Path, output: 
 def _held_out(job: Job, manifest: Path) -> tuple[Rollouts, of_rollouts.HeldOutTrajectories]:
     settings = part_of(FilesStudy, job["part"]).rollouts
     return settings, of_rollouts.HeldOutTrajectories.of(read_manifest(manifest), settings.trajectories)
-
-
-def _under_learned_loads(
-    selection: Path, variant: str, surrogates: Mapping[str, Any], loads: list[Path]
-) -> list[Candidate]:
-    """The most accurate of the surrogates under each of the learned loads."""
-    best = most_accurate(selection, variant)
-    maps = {path.stem: load_map(path) for path in loads}
-    return [] if best is None else with_learned_loads(best, surrogates[best], maps)
 
 
 def _reduced(job: Job) -> tuple[Study, ModalBasis]:

@@ -37,7 +37,7 @@ log = logging.getLogger(__name__)
 # with the described model. So many calls are a steady measure by themselves, and the first few have to do.
 STEPS_IN_PYTHON = "scipy_"
 
-ENOUGH_S = 0.1
+ENOUGH_S = 0.05
 """A simulation whose repeats have taken so long together is timed."""
 
 

@@ -25,7 +25,7 @@ TYPICAL_S = {
     "validation": 15.0,
     "learn_load": 5.0,
     "rehearse": 40.0,
-    "evaluate": 45.0,
+    "evaluate": 90.0,
     "fly": 20.0,
     "fly_references": 240.0,
     "fly_randomly": 90.0,

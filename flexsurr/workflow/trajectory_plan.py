@@ -163,9 +163,9 @@ class TrajectoryPlan(FieldPlan):
         """What will be timed."""
         return {**self.part(EVALUATION), "variant": variant}
 
-    def cost(self, variant: str, response: str) -> Job:
-        """Wall times and errors of everything, under one response."""
-        return {**self.part(COST), "study": self.name, "variant": variant, "response": response}
+    def cost(self, variant: str) -> Job:
+        """Wall times and errors of everything."""
+        return {**self.part(COST), "study": self.name, "variant": variant}
 
     def learn_load(self, variant: str) -> Job:
         """The study's load, learned from configurations of one variant."""

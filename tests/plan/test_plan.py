@@ -42,8 +42,8 @@ def jobs(root: Path) -> dict[str, str]:
     for variant in beam(p).variants:
         found[f"manifest {variant}"] = beam(p).manifest(variant)
         found[f"respond {variant}"] = beam(p).respond(variant)
-        for response in ("free", "forced"):
-            found[f"cost {variant} {response}"] = beam(p).cost(variant, response)
+        found[f"rehearse {variant}"] = beam(p).rehearse(variant)
+        found[f"cost {variant}"] = beam(p).cost(variant)
         for shard in range(beam(p).shards(variant)):
             found[f"simulate {variant} {shard}"] = beam(p).simulate(variant, shard)
     return {name: json.dumps(job, sort_keys=True) for name, job in found.items()}
@@ -51,7 +51,8 @@ def jobs(root: Path) -> dict[str, str]:
 
 NAMED = {"train", "score", "select"}  # a run on other data is another run
 ALL_DATA = {"simulate", "manifest"} | NAMED
-SCORED = {"score", "respond", "cost"}
+TIMED = {"rehearse", "cost"}
+SCORED = {"score", "respond"} | TIMED
 OVER = f"overrides.{BEAM}"
 
 CHANGES = [
@@ -61,7 +62,7 @@ CHANGES = [
     (STUDY, "dataset.training_fraction", 0.7, {"manifest"} | NAMED),
     (STUDY, "dataset.split_by", "sample", {"manifest"} | NAMED),
     (STUDY, "dataset.initial_conditions.q_max_deg", 10.0, ALL_DATA | SCORED),
-    (STUDY, "evaluation.load.force_N", 5.0, {"validation", "respond", "cost"}),
+    (STUDY, "evaluation.load.force_N", 5.0, {"validation", "respond"} | TIMED),
     (QUICK, f"{OVER}.evaluation.judging_integrator", {"method": "dop853"}, {"score"}),
     (QUICK, f"{OVER}.evaluation.drawing_integrator", {"method": "radau_iia_5"}, {"respond"}),
     (QUICK, f"{OVER}.evaluation.reference_integrator", {"method": "radau_iia_5"}, SCORED),
@@ -69,7 +70,7 @@ CHANGES = [
     (QUICK, f"{OVER}.dataset.trajectories", 9, ALL_DATA),
     (QUICK, f"{OVER}.evaluation.repeats", 2, {"cost"}),
     (QUICK, f"{OVER}.evaluation.described_simulations.as_printed", 2, {"cost"}),
-    (QUICK, f"{OVER}.evaluation.simulations", 3, {"respond", "cost"}),
+    (QUICK, f"{OVER}.evaluation.simulations", 3, {"respond"} | TIMED),
     (QUICK, f"{OVER}.evaluation.long_responses", 3, {"score"}),
     (QUICK, f"{OVER}.selection.error_at_most_percent", 3.0, {"select"}),
     (QUICK, f"{OVER}.evaluation.duration_s", 0.3, SCORED),

@@ -41,7 +41,7 @@ SELECTED = {
     "select": 1,
     "responses": 2,
     "rehearse": 2,
-    "evaluate": 4,
+    "evaluate": 2,
     **products_of(*RUNS, *COSTS, *RESPONSES),
 }
 FLOWN = {
@@ -65,7 +65,7 @@ LEARNT = {
     [
         (SWEEP, "spaces.1.hidden", [[8], [4]], {"trials": 1, **SELECTED}),
         (QUICK, f"{OVER}.dataset.trajectories", 9, {"shards": 2, **LEARNT}),
-        (QUICK, f"{OVER}.evaluation.repeats", 2, {"evaluate": 4, **products_of(*COSTS)}),
+        (QUICK, f"{OVER}.evaluation.repeats", 2, {"evaluate": 2, **products_of(*COSTS)}),
         (QUICK, f"{OVER}.evaluation.long_responses", 3, {"trials": 1, **SELECTED}),
         (
             QUICK,
@@ -216,7 +216,7 @@ def test_a_study_that_is_added_is_built_at_once(copy_of_quick, uri):
     scheduled = copy_of_quick.scheduled()
     added = copy_of_quick.plan
     assert scheduled["trials"] == len(added.trial_batches["wing_unit"])
-    assert scheduled["evaluate"] == 2 * len(added.studies["wing_unit"].variants)
+    assert scheduled["evaluate"] == len(added.studies["wing_unit"].variants)
     assert scheduled["join"] == 1
 
 

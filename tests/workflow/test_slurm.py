@@ -64,7 +64,7 @@ def test_small_work_makes_one_job(through_slurm, slurm, rule):
 def test_what_is_timed_has_its_node_alone(through_slurm, slurm):
     jobs = slurm.jobs()
     timed = [job for job in jobs if is_of("evaluate", job)]
-    assert len(timed) == 2 * len(through_slurm.plan.studies[BEAM].variants)
+    assert len(timed) == len(through_slurm.plan.studies[BEAM].variants)
     for job in timed:
         assert job.alone
         others = [other for other in jobs if other is not job]

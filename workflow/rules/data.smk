@@ -5,7 +5,6 @@ wildcard_constraints:
     study="|".join(STUDIES),
     variant="hamiltonian|as_printed|files",
     data=r"(hamiltonian|as_printed)(-\w+)?|files|(pseudo_random|sobol)(-linear_in_modes)?",
-    response="free|forced",
     shard=r"\d+",
     batch=r"\d+-of-\d+",
 

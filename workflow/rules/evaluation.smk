@@ -97,26 +97,28 @@ rule evaluate:
     input:
         rules.rehearse.output,
         selection=f"{RESULTS}/selected/{{study}}.json",
-        loads=lambda w: learned_loads(w) if w.response == "forced" else [],
+        loads=learned_loads,
     output:
-        f"{RESULTS}/evaluation/{{study}}/cost-{{variant}}-{{response}}.parquet",
+        free=f"{RESULTS}/evaluation/{{study}}/cost-{{variant}}-free.parquet",
+        forced=f"{RESULTS}/evaluation/{{study}}/cost-{{variant}}-forced.parquet",
     log:
-        f"{RESULTS}/logs/evaluate/{{study}}-{{variant}}-{{response}}.log",
+        f"{RESULTS}/logs/evaluate/{{study}}-{{variant}}.log",
     benchmark:
-        f"{RESULTS}/benchmarks/evaluate/{{study}}-{{variant}}-{{response}}.tsv"
+        f"{RESULTS}/benchmarks/evaluate/{{study}}-{{variant}}.tsv"
     threads: timing_cores
     resources:
         mem_mb=2000,
         runtime=240,
     params:
-        job=job("cost", "study", "variant", "response"),
+        job=job("cost", "study", "variant"),
         code=code("evaluate"),
         runs=f"{RESULTS}/runs",
     message:
-        "timing the {wildcards.response} response of {wildcards.study}, {wildcards.variant}"
+        "timing responses of {wildcards.study}, {wildcards.variant}"
     shell:
         "python -m flexsurr evaluate --job {params.job:q} --selection {input.selection:q}"
-        " --runs {params.runs:q} --loads {input.loads:q} --output {output:q} > {log:q} 2>&1"
+        " --runs {params.runs:q} --loads {input.loads:q} --free {output.free:q} --forced {output.forced:q}"
+        " > {log:q} 2>&1"
 
 
 rule rivals:
