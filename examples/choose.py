@@ -14,35 +14,35 @@ from time import perf_counter
 import numpy as np
 
 from flexsurr.beam import natural_modes, reduce, reduced_order
+from flexsurr.beam.initial_conditions import initial_states
 from flexsurr.config.study import Integrator, Reduction
 from flexsurr.config.study_files import read_structure
 from flexsurr.evaluation.choice import Choice
 from flexsurr.simulation import simulate
 
 
-def main(path: Path, modes: int, q_max_deg: float, simulates: bool) -> None:
+def main(path: Path, modes: int, q_max_deg: float | None, simulates: bool) -> None:
     """Print the frequencies, and what follows from them."""
     structure = read_structure(path)
     basis = reduce(structure, Reduction(modes=modes, normalisation="mass"))
     choice = Choice(basis, q_max_deg)
-    print("mode  rad/s      period s   damping     tip at q_max, of the length   p_max kg m²/s")
+    print("mode  rad/s      period s   damping     q_max °   tip, L or rad   energy at one amplitude")
+    ends = np.degrees(np.diag(choice.ends) * basis.unit_norms)
+    springs = np.diag(basis.stiffness) / basis.unit_norms**2
     for k, omega in enumerate(basis.omega_rad_s):
         damping = basis.damping[k, k] / (2.0 * omega)
         print(
             f"{k + 1:<5} {omega:<10.4g} {2 * math.pi / omega:<11.4g}{damping:<12.3g}"
-            f"{choice.reaches[k]:<30.3g}{choice.momenta_kg_m2_s[k]:.3g}"
+            f"{ends[k]:<10.3g}{choice.reaches[k]:<16.3g}{springs[k] / springs[0]:.3g}"
         )
     full, _ = natural_modes(structure, np.zeros(structure.coordinates))
     print(f"full order: up to {full[-1]:.3g} rad/s")
 
-    momentum = choice.p_max_kg_m2_s
+    starts = choice.initial_conditions.model_dump(exclude={"kind"})
     print("\ndataset:")
     print(f"  duration_s: {choice.sampled_s:.6g}")
     print(f"  step_s: {choice.sample_step_s:g}")
-    print(
-        f"  initial_conditions: {{q_min_deg: {-q_max_deg}, q_max_deg: {q_max_deg}, "
-        f"p_min_kg_m2_s: {-momentum:g}, p_max_kg_m2_s: {momentum:g}}}"
-    )
+    print("  initial_conditions: {" + ", ".join(f"{key}: {value}" for key, value in starts.items()) + "}")
     print("evaluation:")
     print(f"  duration_s: {choice.response_s():.6g}")
     print(f"  output_step_s: {choice.output_step_s:g}")
@@ -57,8 +57,7 @@ def compare(choice: Choice) -> None:
     basis, fastest, slowest, stiff = choice.basis, choice.fastest_s, choice.slowest_s, choice.stiff
     model = reduced_order(basis, "hamiltonian", "compiled")
     r = len(basis.omega_rad_s)
-    q = np.full(r, math.radians(choice.q_max_deg)) / basis.unit_norms
-    x0 = np.concatenate([q, np.full(r, choice.p_max_kg_m2_s) * basis.unit_norms])
+    (x0,) = initial_states(basis, choice.initial_conditions, np.ones((1, 2 * r)))
     # no step is longer than from one sample to the next
     t = np.linspace(0.0, 10.0 * slowest, round(10.0 * slowest / fastest * 5.0) + 1)
     tight = Integrator(method="radau_iia_5" if stiff else "dop853", rtol=1e-11, atol=1e-13)
@@ -86,7 +85,7 @@ if __name__ == "__main__":
     parser.add_argument("structure", type=Path, nargs="?", default=cantilever, help="its file")
     parser.add_argument("--modes", type=int, default=1, help="that are kept")
     parser.add_argument(
-        "--q-max", type=float, default=20.0, metavar="DEG", help="amplitude of unit-norm modes"
+        "--q-max", type=float, metavar="DEG", help="amplitude of the first mode, of unit norm"
     )
     parser.add_argument(
         "--try", action="store_true", dest="simulates", help="simulate with several integrators"

@@ -15,6 +15,7 @@ from flexsurr.config.reference import reference as all_keys
 from flexsurr.config.section import MATERIALS, Material, rectangle
 from flexsurr.config.settings import load
 from flexsurr.config.structure import JOINTS, Joint, Structure
+from flexsurr.config.study_files import read_structure
 from flexsurr.evaluation.new_study import damping_s, study_files
 from flexsurr.storage import replacing
 from flexsurr.workflow.modes_plan import ModesPlan
@@ -66,6 +67,8 @@ def _data(study: AnyPlan) -> str:
     return f"{len(study.sources)} files"
 
 
+ELEMENTS = 10
+
 KEYS = {
     "length": "length_m",
     "mass": "mass_per_length_kg_m",
@@ -92,7 +95,13 @@ JOINT_OF: dict[str, Joint] = {
 def _new_study_arguments(parser: argparse.ArgumentParser) -> None:
     """What the beam is."""
     parser.add_argument("name", help="of the study and of its files: letters, digits, hyphens, underscores")
-    parser.add_argument("--length", type=float, required=True, metavar="M", help="span [m]")
+    parser.add_argument(
+        "--structure",
+        type=Path,
+        metavar="FILE",
+        help="of a beam that is described already, below --directory; without it --length and a section",
+    )
+    parser.add_argument("--length", type=float, metavar="M", help="span [m]")
     by_values = parser.add_argument_group("the section by its values")
     for option, unit, text in (
         ("mass", "KG_M", "mass per span [kg/m]"),
@@ -108,7 +117,7 @@ def _new_study_arguments(parser: argparse.ArgumentParser) -> None:
     by_shape.add_argument("--height", type=float, metavar="M", help="upwards [m]")
     by_shape.add_argument("--material", choices=sorted(MATERIALS), help="with the values of the standards")
     by_shape.add_argument("--young", type=float, metavar="PA", help="or E [Pa]")
-    by_shape.add_argument("--poisson", type=float, default=0.3, help="ν, by default 0.3")
+    by_shape.add_argument("--poisson", type=float, help="ν, by default 0.3")
     by_shape.add_argument("--density", type=float, metavar="KG_M3", help="with E: mass per volume [kg/m³]")
     parser.add_argument(
         "--joints",
@@ -117,12 +126,12 @@ def _new_study_arguments(parser: argparse.ArgumentParser) -> None:
         help=f"{', '.join(JOINTS)}; by default those whose stiffness is given, of a rectangle out_of_plane",
     )
     parser.add_argument(
-        "--damping", type=float, default=0.0, metavar="RATIO", help="of the first mode, such as 0.02"
+        "--damping", type=float, metavar="RATIO", help="of the first mode, such as 0.02; by default 0"
     )
     parser.add_argument(
-        "--gravity", type=float, default=0.0, metavar="M_S2", help="downwards [m/s²], such as 9.80665"
+        "--gravity", type=float, metavar="M_S2", help="downwards [m/s²], such as 9.80665; by default 0"
     )
-    parser.add_argument("--elements", type=int, default=10, help="by default 10")
+    parser.add_argument("--elements", type=int, help=f"by default {ELEMENTS}")
     parser.add_argument(
         "--modes", type=int, help="that are kept, by default 1, or 3 where joints are several"
     )
@@ -132,10 +141,11 @@ def _new_study_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 @for_people(_new_study_arguments, ValueError, EquilibriumNotFound)
-def new_study(name: str, directory: Path, modes: int | None, damping: float, **given: Any) -> None:
+def new_study(name: str, directory: Path, structure: Path | None, modes: int | None, **given: Any) -> None:
     """Begin a study of your own beam: write its structure, sweep and study, ready to run.
 
-    ValueError for what makes no beam, or exists already.
+    ValueError for what makes no beam, or exists already; ConfigurationError for mistakes in the file of a
+    structure.
     """
     if not re.fullmatch(r"[A-Za-z][\w-]*", name, re.ASCII):
         raise ValueError(
@@ -145,11 +155,11 @@ def new_study(name: str, directory: Path, modes: int | None, damping: float, **g
         raise ValueError(
             f"{directory}: has no config/config.yaml; allowed: the folder that holds the Snakefile"
         )
-    structure = _structure(name, given, damping)
-    kept = modes if modes is not None else min(1 if len(structure.joints) == 1 else 3, structure.coordinates)
-    if not 1 <= kept <= structure.coordinates:
-        raise ValueError(f"--modes: {kept} is not allowed; allowed: 1 to {structure.coordinates}")
-    files = study_files(structure, kept)
+    beam = _described(directory, structure, given) if structure else _structure(name, given)
+    kept = modes if modes is not None else min(1 if len(beam.joints) == 1 else 3, beam.coordinates)
+    if not 1 <= kept <= beam.coordinates:
+        raise ValueError(f"--modes: {kept} is not allowed; allowed: 1 to {beam.coordinates}")
+    files = study_files(name, beam, kept, structure.as_posix() if structure else None)
     for path in files:
         if (directory / path).exists():
             raise ValueError(f"{path}: exists already, and nothing is overwritten; allowed: another name")
@@ -165,10 +175,20 @@ def new_study(name: str, directory: Path, modes: int | None, damping: float, **g
     print(f"{run} --report results-{name}/report.html  # on one page")
 
 
-def _structure(name: str, given: dict[str, Any], damping: float) -> Structure:
+def _described(directory: Path, file: Path, given: dict[str, Any]) -> Structure:
+    """The beam in a file, of which the options may say nothing more."""
+    for option, value in given.items():
+        if value is not None:
+            raise ValueError(f"--{option.replace('_', '-')}: not with --structure; allowed: in {file} itself")
+    return read_structure(directory / file)
+
+
+def _structure(name: str, given: dict[str, Any]) -> Structure:
     """The beam that the options describe."""
+    if given["length"] is None:
+        raise ValueError("--length: missing; allowed: more than 0, or else --structure")
     section = _rectangle(given)
-    values = section | {
+    values = {"elements": ELEMENTS, **section} | {
         KEYS[option]: value for option, value in given.items() if option in KEYS and value is not None
     }
     if "mass_per_length_kg_m" not in values:
@@ -181,6 +201,7 @@ def _structure(name: str, given: dict[str, Any], damping: float) -> Structure:
             raise ValueError(
                 "--bending: missing; allowed: more than 0, or --in-plane, --torsion, --axial, or a rectangle"
             )
+    damping = given["damping"] or 0.0
     if not 0.0 <= damping < 1.0:
         raise ValueError(f"--damping: {damping:g} is not allowed; allowed: 0 or more, less than 1")
     try:
@@ -213,11 +234,10 @@ def _rectangle(given: dict[str, Any]) -> dict[str, float]:
             raise ValueError(
                 f"--{option}: {given[option]} is not allowed; allowed: more than 0, or --material"
             )
-    if not -1.0 < given["poisson"] <= 0.5:
-        raise ValueError(
-            f"--poisson: {given['poisson']:g} is not allowed; allowed: more than -1, at most 0.5"
-        )
-    material = Material(given["young"], given["poisson"], given["density"])
+    poisson = 0.3 if given["poisson"] is None else given["poisson"]
+    if not -1.0 < poisson <= 0.5:
+        raise ValueError(f"--poisson: {poisson:g} is not allowed; allowed: more than -1, at most 0.5")
+    material = Material(given["young"], poisson, given["density"])
     return rectangle(given["width"], given["height"], material)
 
 

@@ -9,8 +9,9 @@ from functools import cached_property
 
 import numpy as np
 
-from flexsurr.beam import ModalBasis, tip_position
-from flexsurr.config.study import Integrator
+from flexsurr.beam import ModalBasis, tip_position, tip_twist
+from flexsurr.beam.initial_conditions import initial_states
+from flexsurr.config.study import InitialConditions, Integrator
 from flexsurr.simulation.rhs import Array
 
 STABLE = 5.0
@@ -18,6 +19,15 @@ STABLE = 5.0
 
 PERIODS = 100.0
 """Of the slowest mode, which a response lasts that nothing damps."""
+
+REACH = 0.5
+"""How far the first mode moves the tip at the end of its range: of the length, or rad of twist."""
+
+STRETCH = 0.05
+"""The same of a structure that can do no more than stretch."""
+
+KINETIC = 0.25
+"""Energy at the end of the momentum's range, of that at the end of the coordinate's."""
 
 
 def plain(number: float) -> float:
@@ -28,10 +38,13 @@ def plain(number: float) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Choice:
-    """What fits the modes of `basis`, which start at up to `q_max_deg` [°] of unit-norm modes."""
+    """What fits the modes of `basis`, of which the first starts at up to `given_deg` [°], of unit norm.
+
+    Without a value it starts as far out as moves the tip by `REACH`.
+    """
 
     basis: ModalBasis
-    q_max_deg: float = 20.0
+    given_deg: float | None = None
 
     @property
     def slowest_s(self) -> float:
@@ -77,24 +90,49 @@ class Choice:
         lasts = longest if lasting.size == 0 else min(longest, math.log(100.0) / lasting[0])
         return max(round(plain(lasts) / self.output_step_s), 1) * self.output_step_s
 
-    @property
-    def momenta_kg_m2_s(self) -> Array:
-        """(r,) momentum of each unit-norm mode that has the energy of `q_max_deg`."""
-        q_max = math.radians(self.q_max_deg)
-        return self.basis.omega_rad_s * q_max / self.basis.unit_norms**2
+    @cached_property
+    def q_max_deg(self) -> float:
+        """Largest coordinate of the first mode [°], of unit norm; of axial joints 180/π of it are a metre."""
+        if self.given_deg is not None:
+            return self.given_deg
+        stretches = self.basis.structure.ordered_joints == ("axial",)
+        tried = np.geomspace(1e-3, 180.0, 1000)
+        first = np.radians(tried) / self.basis.unit_norms[0]
+        beyond = self._moved(first[:, None] * self.basis.modes[:, 0]) > (STRETCH if stretches else REACH)
+        return float(f"{tried[np.argmax(beyond) if beyond.any() else -1]:.2g}")
 
     @property
-    def p_max_kg_m2_s(self) -> float:
-        """One range for all modes: that of the mode which moves the least mass."""
-        return plain(float(np.min(self.momenta_kg_m2_s)))
+    def initial_conditions(self) -> InitialConditions:
+        """Where trajectories start: the higher modes as a load of the size that bends the first would."""
+        springs = self.basis.stiffness[0, 0] / self.basis.unit_norms[0] ** 2
+        at_rest = springs * math.radians(self.q_max_deg) / self.basis.omega_rad_s[0]
+        p_max = float(f"{math.sqrt(KINETIC) * at_rest:.2g}")
+        return InitialConditions(
+            q_min_deg=-self.q_max_deg,
+            q_max_deg=self.q_max_deg,
+            p_min_kg_m2_s=-p_max,
+            p_max_kg_m2_s=p_max,
+            higher_modes="as_forced" if len(self.basis.omega_rad_s) > 1 else "alike",
+        )
+
+    @property
+    def ends(self) -> Array:
+        """(r, r) coordinates η, in each row those of one mode at the end of its range and of no other."""
+        r = len(self.basis.omega_rad_s)
+        unit = np.hstack([0.5 + 0.5 * np.eye(r), np.full((r, r), 0.5)])
+        return initial_states(self.basis, self.initial_conditions, unit)[:, :r]
 
     @property
     def reaches(self) -> Array:
-        """(r,) how far `q_max_deg` of each mode moves the tip, of the length."""
-        structure, q_max = self.basis.structure, math.radians(self.q_max_deg)
-        shapes = (self.basis.modes / self.basis.unit_norms).T * q_max
-        moved = tip_position(structure, shapes) - tip_position(structure, 0.0 * shapes)
-        return np.asarray(np.linalg.norm(moved, axis=-1) / structure.length_m)
+        """(r,) how far each mode alone moves the tip: of the length, or rad of twist if that is more."""
+        return self._moved(self.ends @ self.basis.modes.T)
+
+    def _moved(self, q: Array) -> Array:
+        """(k,) how far joint coordinates q (k, n) move the tip from where it is undeformed."""
+        structure = self.basis.structure
+        moved = tip_position(structure, q) - tip_position(structure, 0.0 * q)
+        twist = np.abs(tip_twist(structure, q))
+        return np.asarray(np.maximum(np.linalg.norm(moved, axis=-1) / structure.length_m, twist))
 
     @property
     def integrator(self) -> Integrator:

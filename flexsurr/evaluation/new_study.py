@@ -7,7 +7,11 @@ Everything in seconds, newtons and degrees follows from the structure's own freq
 from collections.abc import Mapping
 from typing import Any
 
-from flexsurr.beam import reduce
+import numpy as np
+
+from flexsurr.beam import reduce, stiffness_matrix
+from flexsurr.beam.equilibrium import static_residual
+from flexsurr.config.load import TipForce, TipMoment
 from flexsurr.config.structure import STIFFNESS_KEY, Structure
 from flexsurr.config.study import Reduction
 from flexsurr.evaluation.choice import Choice, plain
@@ -21,6 +25,13 @@ SAMPLES = 100
 
 DEFLECTION = 0.03
 """How far the study's load moves the tip if held, of the length: near resonance it is some times that."""
+
+TWIST_RAD = 0.1
+"""The same where a moment twists it."""
+
+HIGHER_MODES = """\
+    higher_modes: as_forced  # as far out as the first mode, they would be chaos
+"""
 
 COMMENTS = {
     "length_m": "span, from the clamp to the tip",
@@ -38,22 +49,21 @@ COMMENTS = {
 }
 
 
-def study_files(structure: Structure, modes: int) -> dict[str, str]:
-    """The text of each file by its path below the folder that holds the Snakefile.
+def study_files(name: str, structure: Structure, modes: int, file: str | None = None) -> dict[str, str]:
+    """The text of each file of the study `name` by its path below the folder that holds the Snakefile.
 
-    ValueError for more modes than the structure has coordinates, EquilibriumNotFound where it buckles under
-    its own weight.
+    `file` describes the structure; without one it is among those that are written. ValueError for more modes
+    than the structure has coordinates, EquilibriumNotFound where it buckles under its own weight.
     """
-    name = structure.name
     normalisation = "unit" if modes == 1 else "mass"
     reduction = Reduction(modes=modes, normalisation=normalisation, about=_about(structure))
     choice = Choice(reduce(structure, reduction))
-    return {
-        f"config/structures/{name}.yaml": _structure(structure),
-        f"config/sweeps/{name}.yaml": _sweep(structure, choice),
-        f"config/studies/{name}.yaml": _study(structure, choice, normalisation),
+    files = {
+        f"config/sweeps/{name}.yaml": _sweep(name, structure, choice),
+        f"config/studies/{name}.yaml": _study(name, file or f"config/structures/{name}.yaml", choice),
         f"{name}.yaml": _top(name),
     }
+    return files if file else {f"config/structures/{name}.yaml": _structure(structure)} | files
 
 
 def _about(structure: Structure) -> str:
@@ -77,7 +87,7 @@ def _structure(structure: Structure) -> str:
     return _aligned("\n".join(lines) + "\n", 44)
 
 
-def _sweep(structure: Structure, choice: Choice) -> str:
+def _sweep(name: str, structure: Structure, choice: Choice) -> str:
     one = len(choice.basis.omega_rad_s) == 1
     samples = min(SAMPLES, round(choice.sampled_s / choice.sample_step_s))
     hidden, degree = (16, 8) if one else (32, 6)
@@ -85,7 +95,7 @@ def _sweep(structure: Structure, choice: Choice) -> str:
     network = "dissipative_hnn" if structure.dissipates else "hnn"
     of_network = "a Hamiltonian network" + (" with dissipation" if structure.dissipates else "")
     text = f"""\
-# What to learn of {structure.name}. A key with several values is a dimension of the search (docs/sweeps.md).
+# What to learn of {name}. A key with several values is a dimension of the search (docs/sweeps.md).
 
 search: grid
 spaces:
@@ -116,14 +126,16 @@ spaces:
     return _aligned(text, 38)
 
 
-def _study(structure: Structure, choice: Choice, normalisation: str) -> str:
-    name, basis = structure.name, choice.basis
-    p_max = choice.p_max_kg_m2_s
+def _study(name: str, file: str, choice: Choice) -> str:
+    basis, structure = choice.basis, choice.basis.structure
+    starts = choice.initial_conditions
+    unit = "lengths or rad" if "torsion" in structure.joints else "lengths"
+    higher = "" if starts.higher_modes == "alike" else HIGHER_MODES
     frequencies = ", ".join(f"{omega:.4g}" for omega in basis.omega_rad_s)
     duration_s = choice.response_s(PERIODS)
     periods = duration_s / choice.slowest_s
     longest_s = plain(min(10.0 * choice.slowest_s, 0.5 * duration_s))
-    load, held = _load(structure, choice)
+    load, held = _load(structure, float(basis.omega_rad_s[0]))
     reaches = ", ".join(f"{reach:.2g}" for reach in choice.reaches)
     fast, tight = (_integrator(each) for each in (choice.integrator, choice.tight_integrator))
     conserves = not structure.dissipates and not choice.stiff
@@ -132,7 +144,7 @@ def _study(structure: Structure, choice: Choice, normalisation: str) -> str:
 # {name_in_words(name)}: {len(basis.omega_rad_s)} mode(s), at {frequencies} rad/s.
 # The slowest takes {choice.slowest_s:.3g} s; all times, ranges and integrators follow: see docs/choosing.md.
 
-structure: config/structures/{name}.yaml
+structure: {file}
 sweeps:
   default: config/sweeps/{name}.yaml
 seed: 2024
@@ -140,7 +152,7 @@ variants: [hamiltonian]  # as_printed beside it: the paper's model, without its 
 
 reduction:
   modes: {len(basis.omega_rad_s)}
-  normalisation: {normalisation}
+  normalisation: {basis.normalisation}
   about: {_about(structure)}
 
 dataset:  # free responses that train the surrogates
@@ -149,11 +161,11 @@ dataset:  # free responses that train the surrogates
   duration_s: {choice.sampled_s:.6g}  # two periods of the slowest mode
   step_s: {choice.sample_step_s:g}  # a twentieth of the fastest one's
   initial_conditions:  # as wide as what you will simulate
-    q_min_deg: {-choice.q_max_deg:g}  # each mode alone moves the tip by {reaches} of the length
-    q_max_deg: {choice.q_max_deg:g}
-    p_min_kg_m2_s: {-p_max:g}
-    p_max_kg_m2_s: {p_max:g}
-  integrator: {tight}
+    q_min_deg: {starts.q_min_deg:g}  # each mode alone moves the tip by {reaches} {unit}
+    q_max_deg: {starts.q_max_deg:g}
+    p_min_kg_m2_s: {starts.p_min_kg_m2_s:g}  # with a quarter of the energy that the first mode has at q_max
+    p_max_kg_m2_s: {starts.p_max_kg_m2_s:g}
+{higher}  integrator: {tight}
 
 evaluation:
   simulations: 3
@@ -180,25 +192,30 @@ statics:
     return _aligned(text, 38)
 
 
-def _load(structure: Structure, choice: Choice) -> tuple[str, list[float]]:
-    """The study's load, swinging below its first frequency, and tip forces [N] whose deflection is large."""
-    length, joint = structure.length_m, structure.ordered_joints[0]
-    bends = [each for each in ("out_of_plane", "in_plane") if each in structure.joints]
-    stiffness = float(structure.section_stiffness(bends[0] if bends else joint) or 0.0)
-    omega = plain(0.8 * float(choice.basis.omega_rad_s[0]))
-    history = f"    history: {{kind: sine, frequency_rad_s: {omega:g}}}  # below the first mode's"
-    largest = plain(3.0 * stiffness / length**2) if bends else 1.0
-    if bends:
-        force = plain(DEFLECTION * 3.0 * stiffness / length**2)
-        along = "[0.0, 0.0, 1.0]" if bends[0] == "out_of_plane" else "[0.0, 1.0, 0.0]"
-        lines = ["    kind: tip_force", f"    force_N: {force:g}", f"    direction: {along}"]
-    elif joint == "torsion":
-        moment = plain(0.1 * stiffness / length)
-        lines = ["    kind: tip_moment", f"    moment_N_m: {moment:g}", "    direction: [1.0, 0.0, 0.0]"]
+def _load(structure: Structure, omega_rad_s: float) -> tuple[str, list[float]]:
+    """The study's load, swinging below the first frequency, and tip forces [N] whose deflection is large."""
+    if structure.felt_axes:
+        direction = structure.felt_axes[-1]
+        of_length = structure.length_m / _compliance(structure, TipForce(force_N=1.0, direction=direction))
+        share = DEFLECTION * (1.0 if {"in_plane", "out_of_plane"} & set(structure.joints) else 0.1)
+        acts, largest = f"kind: tip_force\n    force_N: {plain(share * of_length):g}", plain(of_length)
     else:
-        force = plain(0.1 * DEFLECTION * stiffness)
-        lines = ["    kind: tip_force", f"    force_N: {force:g}", "    direction: [1.0, 0.0, 0.0]"]
-    return "\n".join([*lines, history]), [largest * part for part in (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)]
+        direction = structure.clamp_axes[0]
+        of_radian = 1.0 / _compliance(structure, TipMoment(moment_N_m=1.0, direction=direction))
+        acts, largest = f"kind: tip_moment\n    moment_N_m: {plain(TWIST_RAD * of_radian):g}", 1.0
+    along = ", ".join(f"{part + 0.0:.6g}" for part in direction)
+    text = f"""\
+    {acts}
+    direction: [{along}]
+    history: {{kind: sine, frequency_rad_s: {plain(0.8 * omega_rad_s):g}}}  # below the first mode's"""
+    return text, [largest * part for part in (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)]
+
+
+def _compliance(structure: Structure, load: TipForce | TipMoment) -> float:
+    """How far a unit load moves what it acts on, along itself: Qᵀ K⁻¹ Q, in m/N, of a moment in rad/(N m)."""
+    rest = np.zeros(structure.coordinates)
+    pushed = static_residual(structure, rest) - static_residual(structure, rest, load)
+    return float(pushed @ np.linalg.solve(stiffness_matrix(structure), pushed))
 
 
 def _top(name: str) -> str:

@@ -5,11 +5,15 @@ import re
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 import yaml
 
+from flexsurr.beam import reduce, reduced_order, tip_position, tip_twist
+from flexsurr.beam.initial_conditions import initial_states
 from flexsurr.cli import studies
 from flexsurr.cli.command import COMMANDS
 from flexsurr.config.settings import load
@@ -72,6 +76,41 @@ def test_times_go_with_the_period_and_loads_with_the_stiffness(clone):
     assert forces[1] == pytest.approx(0.01 * forces[0])
 
 
+@pytest.mark.parametrize("name", BEAMS)
+def test_ranges_follow_from_the_beam(clone, name):
+    """The first mode moves the tip by half the length or rad; p_max has a quarter of the energy of q_max."""
+    ranged = f"ranged-{name}"
+    new_study(clone, ranged, *BEAMS[name])
+    study = Plan(load(clone, ["config/config.yaml", f"{ranged}.yaml"])).studies[ranged].resolved
+    starts, structure = study.study.dataset.initial_conditions, study.structure
+    basis = reduce(structure, study.study.reduction)
+    r = len(basis.omega_rad_s)
+    unit = np.full((2, 2 * r), 0.5)
+    unit[0, 0] = unit[1, r] = 1.0
+    bent, moving = initial_states(basis, starts, unit)
+    shape = basis.modes @ bent[:r]
+    moved = np.linalg.norm(tip_position(structure, shape) - tip_position(structure, 0.0 * shape))
+    most = max(moved / structure.length_m, abs(tip_twist(structure, shape)))
+    assert most == pytest.approx(0.05 if name == "bar" else 0.5, rel=0.06)
+    weightless = replace(basis, structure=structure.model_copy(update={"gravity_m_s2": 0.0}))
+    model = reduced_order(weightless, "hamiltonian", "numpy")
+    elastic, kinetic = (model.energy(state) for state in (bent, moving))
+    # of the heavy one the modal mass is a tenth too small, since weight has its part in the frequency
+    assert kinetic == pytest.approx(0.25 * elastic, rel=0.15 if name == "heavy" else 0.07)
+    assert starts.q_min_deg == -starts.q_max_deg
+    assert starts.p_min_kg_m2_s == -starts.p_max_kg_m2_s
+    assert starts.higher_modes == ("alike" if r == 1 else "as_forced")
+
+
+def test_a_beam_in_a_file_has_a_study_with_that_file(clone):
+    new_study(clone, "gusty", "--structure", "config/structures/tapered_wing.yaml")
+    assert not (clone / "config/structures/gusty.yaml").exists()
+    study = Plan(load(clone, ["config/config.yaml", "gusty.yaml"])).studies["gusty"].resolved
+    assert study.structure.name == "tapered_wing"
+    assert len(study.study.evaluation.load.parts) == 1
+    assert study.study.reduction.about == "equilibrium"
+
+
 def test_nothing_is_overwritten(clone):
     path = clone / "config/sweeps/mine.yaml"
     path.write_text("mine\n")
@@ -99,6 +138,11 @@ def test_nothing_is_overwritten(clone):
         (BLADE[:4], "--height: None is not allowed"),
         (BLADE[:6], "--young: None is not allowed; allowed: more than 0, or --material"),
         ((*ROD, "--material", "steel"), "--material: needs --width and --height"),
+        (ROD[2:], "--length: missing; allowed: more than 0, or else --structure"),
+        (
+            ("--structure", "config/structures/wing.yaml", *ROD),
+            "--length: not with --structure; allowed: in config/structures/wing.yaml itself",
+        ),
     ],
 )
 def test_mistakes_are_one_line_with_the_option(clone, arguments, words):
