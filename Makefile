@@ -11,7 +11,7 @@ INSTALLED := $(VENV)/.installed
 export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
 export MLFLOW_DISABLE_TELEMETRY := true
 
-.PHONY: help install reproduce reproduce-full crossover report smoke lint check test coverage audit reference tables docs ui benchmark browser postgresql slurm compiler clean
+.PHONY: help install reproduce reproduce-full crossover report smoke lint check test coverage audit reference tables docs pictures ui benchmark browser postgresql slurm compiler clean
 
 help:
 	@echo "make install      the environment alone, in .venv"
@@ -31,6 +31,7 @@ help:
 	@echo "make reference    docs/reference.md anew"
 	@echo "make tables       the tables of README.md and docs anew, of what is in results"
 	@echo "make docs         the documentation as pages, build/site/index.html"
+	@echo "make pictures     docs/images anew: figures, and screenshots of the report and of MLflow's page"
 	@echo "make audit        what is installed against known advisories   (ADVISORIES=advisories.zip)"
 	@echo
 	@echo "make clean        remove all results; the environment stays"
@@ -95,6 +96,9 @@ reference: $(INSTALLED)
 
 tables: $(INSTALLED)
 	python docs/tables.py
+
+pictures: $(INSTALLED) browser
+	python docs/pictures.py results
 
 docs: $(INSTALLED)
 	python -m sphinx --quiet --fail-on-warning --keep-going --builder html docs build/site

@@ -1,25 +1,26 @@
 """The pages a person looks at, in a real browser: the report, and MLflow's page served on loopback."""
 
-import os
 import re
-import shutil
-import socket
-import subprocess
-import sys
-import tempfile
-import time
-import urllib.error
-import urllib.request
-from dataclasses import dataclass
 from pathlib import Path
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
+import pictures
 import pytest
-from mlflow import MlflowClient
-from selenium import webdriver
-from selenium.webdriver.chrome.options import Options
-from selenium.webdriver.chrome.service import Service
+from pictures import (
+    PATIENCE_S,
+    click,
+    headless,
+    heads,
+    mlflow_page,
+    open_list,
+    open_table,
+    sort_by,
+    text_of,
+    wait_for,
+    wait_for_sorting,
+)
 from selenium.webdriver.common.by import By
 from selenium.webdriver.support.ui import WebDriverWait
 
@@ -27,24 +28,10 @@ from flexsurr.config.reading import read_yaml
 from flexsurr.config.structure import Structure
 from flexsurr.report.catalogue import FIGURES, TABLES
 from flexsurr.report.pages import ROWS
-from flexsurr.tracking.description import RUN_KEY
-from flexsurr.tracking.store import store_uri
 
-BROWSERS = ("chromium", "chromium-browser", "google-chrome")
-QUIET = (
-    "--headless=new",
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-dev-shm-usage",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--no-first-run",
-    "--window-size=1400,1000",
-)
-PATIENCE_S = 120
+TOP = Path(__file__).parents[2]
 SCROLL_DOWN = "for (const e of document.querySelectorAll('*')) e.scrollTop += 300"
-CANTILEVER = Structure(**read_yaml(Path(__file__).parents[2] / "config/structures/cantilever.yaml"))
+CANTILEVER = Structure(**read_yaml(TOP / "config/structures/cantilever.yaml"))
 OF_THE_CANTILEVER = [
     name for name, figure in FIGURES.items() if "trajectories" in figure.sources and figure.shows(CANTILEVER)
 ]
@@ -52,16 +39,9 @@ OF_THE_CANTILEVER = [
 
 @pytest.fixture(scope="module")
 def browser():
-    """A headless Chromium with an empty profile, that keeps what pages print to their console."""
-    options = Options()
-    options.binary_location = next(filter(None, map(shutil.which, BROWSERS)))
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
-        for argument in (*QUIET, f"--user-data-dir={profile}"):
-            options.add_argument(argument)
-        driver = webdriver.Chrome(options=options, service=Service(shutil.which("chromedriver")))
+    """A headless Chromium for the tests of this file."""
+    with headless(1400, 1000) as driver:
         yield driver
-        driver.quit()
 
 
 def complaints(browser) -> list[str]:
@@ -75,39 +55,11 @@ def serious(browser) -> list[str]:
     return [message for message in complaints(browser) if "/users/current" not in message]
 
 
-def text_of(browser) -> str:
-    return browser.find_element(By.TAG_NAME, "body").text
-
-
-def wait_for(browser, *words: str) -> None:
-    """Wait until the page shows all of `words`, whatever their case."""
-    WebDriverWait(browser, PATIENCE_S).until(
-        lambda driver: all(word.lower() in text_of(driver).lower() for word in words),
-        f"the page does not show {words}",
-    )
-
-
-def click(browser, word: str) -> None:
-    """Click the innermost thing that says `word`."""
-    found = browser.find_elements(By.XPATH, f"//*[normalize-space(text())='{word}']")
-    assert found, f"{word!r} is not on the page: {text_of(browser)}"
-    found[-1].click()
-
-
 def open_report(quick, browser, kind: str, study: str = "cantilever") -> None:
     """The list of a study's figures or tables in the report."""
     browser.get((quick.results / "report.html").as_uri())
     wait_for(browser, "Results")
     open_list(browser, kind, study)
-
-
-def open_list(browser, kind: str, study: str = "cantilever") -> None:
-    """The same, where the report is open already: it has twenty megabytes."""
-    click(browser, "Results")
-    wait_for(browser, "airliner", "cantilever", "wing")
-    click(browser, study)
-    wait_for(browser, "figures", "tables")
-    click(browser, kind)
 
 
 def test_the_report_lists_every_figure_and_table_of_the_study(quick, browser):
@@ -197,25 +149,8 @@ def test_the_report_opens_with_the_answer_and_not_with_the_graph_of_rules(quick,
     assert complaints(browser) == []
 
 
-def wait_for_sorting(browser) -> None:
-    """Wait until the page's table can be sorted, and look for an error that says why it cannot."""
-    WebDriverWait(browser, PATIENCE_S).until(
-        lambda driver: driver.find_elements(By.CSS_SELECTOR, "table.dataTable"),
-        f"no table that sorts: {complaints(browser)}",
-    )
-
-
-def heads(browser) -> list[str]:
-    return [head.text for head in browser.find_elements(By.CSS_SELECTOR, "thead th")]
-
-
-def sort_by(browser, column: str) -> None:
-    names = [name.replace("\n", "") for name in heads(browser)]
-    browser.find_elements(By.CSS_SELECTOR, "thead th")[names.index(column)].click()
-
-
 def column_of(browser, column: str) -> list[str]:
-    place = [name.replace("\n", "") for name in heads(browser)].index(column)
+    place = heads(browser).index(column)
     script = (
         f"return [...document.querySelectorAll('tbody tr td:nth-child({place + 1})')].map(td => td.innerText)"
     )
@@ -231,14 +166,7 @@ def assert_sorted(browser, column: str, falling: bool = False) -> None:
 
 def test_a_table_in_the_report_sorts_by_its_numbers_and_is_searched(quick, browser):
     open_report(quick, browser, "tables")
-    wait_for(browser, "cost")
-    look, _ = browser.find_elements(By.XPATH, "//tr[td[normalize-space(.)='cost']]//a")
-    look.click()
-    frame = WebDriverWait(browser, PATIENCE_S).until(
-        lambda driver: driver.find_element(By.TAG_NAME, "iframe")
-    )
-    browser.switch_to.frame(frame)
-    wait_for_sorting(browser)
+    open_table(browser, "cost")
     table = pd.read_csv(quick.results / "tables" / "cantilever" / "cost.csv")
     # written in scientific notation: sorted as words they would be in another order
     shown = column_of(browser, "tip_error_percent")
@@ -267,55 +195,16 @@ def test_every_table_is_a_page_that_sorts(quick, browser, study):
         assert complaints(browser) == []
 
 
-@dataclass(frozen=True)
-class Served:
-    """A server's address, the experiment's number there, and the pages of its runs by run_id."""
-
-    address: str
-    experiment: str
-    pages: dict[str, str]
-
-
 @pytest.fixture(scope="module")
-def served(quick, tmp_path_factory):
+def served(quick):
     """MLflow's page of the quick preset, on loopback until the tests of this file are done."""
-    folder = tmp_path_factory.mktemp("mlflow")
-    shutil.copytree(quick.results / "mlflow", folder, dirs_exist_ok=True)
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
-    address = f"http://127.0.0.1:{port}"
-    client = MlflowClient(store_uri(None, folder))
-    experiment = client.get_experiment_by_name("cantilever").experiment_id
-    tagged = [(run.data.tags.get(RUN_KEY), run.info.run_id) for run in client.search_runs([experiment])]
-    pages = {key: page for key, page in tagged if key}
-    command = [sys.executable, "-m", "mlflow", "ui", "--host", "127.0.0.1", "--port", str(port)]
-    with (folder / "server.log").open("w") as output:
-        server = subprocess.Popen(
-            [*command, "--backend-store-uri", store_uri(None, folder), "--workers", "1"],
-            cwd=folder,
-            env=os.environ | {"MLFLOW_DISABLE_TELEMETRY": "true"},
-            stdout=output,
-            stderr=subprocess.STDOUT,
-            start_new_session=True,
-        )
-    try:
-        for _ in range(int(PATIENCE_S / 0.2)):
-            try:
-                urllib.request.urlopen(f"{address}/health", timeout=5).close()
-                break
-            except (urllib.error.URLError, OSError):
-                assert server.poll() is None, (folder / "server.log").read_text()
-                time.sleep(0.2)
-        yield Served(address, experiment, pages)
-    finally:
-        os.killpg(server.pid, 15)
-        server.wait(PATIENCE_S)
+    with mlflow_page(quick.results) as page:
+        yield page
 
 
 def test_the_address_of_make_ui_opens_on_model_training(served, browser):
     """Not on MLflow's view of language models, which has traces and prompts."""
-    makefile = (Path(__file__).parents[2] / "Makefile").read_text()
+    makefile = (TOP / "Makefile").read_text()
     place = re.search(r"^MODEL_TRAINING := (.+)$", makefile, re.MULTILINE)[1].replace("\\#", "#")
     browser.get(f"{served.address}/{place}")
     wait_for(browser, "cantilever", "Model registry", "sweeps of cantilever")
@@ -338,8 +227,7 @@ def test_the_page_of_a_trial_shows_parameters_and_figures(quick, served, browser
 
 
 def test_the_page_of_a_trial_draws_its_losses(served, browser):
-    page = next(page for key, page in served.pages.items() if key.startswith("hnn-"))
-    browser.get(f"{served.address}/#/experiments/{served.experiment}/runs/{page}/model-metrics")
+    browser.get(f"{served.run('hnn')}/model-metrics")
 
     def losses_are_drawn(driver) -> bool:
         """At the bottom of the page, which draws what is scrolled to."""
@@ -355,3 +243,26 @@ def test_the_page_of_the_champion_shows_its_alias_and_its_card(served, browser):
     browser.get(f"{served.address}/#/models/cantilever-hamiltonian")
     wait_for(browser, "cantilever-hamiltonian", "champion", "Version 1")
     assert serious(browser) == []
+
+
+def test_one_command_makes_every_picture_of_the_documents(quick, tmp_path, capsys):
+    """But for that of a study which the quick preset leaves out: the command says so, and goes on."""
+    pictures.pictures(quick.results, tmp_path)
+    assert "crossover.png: left as it is; there is no" in capsys.readouterr().out
+    made = {path.name: path for path in tmp_path.iterdir()}
+    assert {*made, "crossover.png"} == pictures.NAMES
+    for name, path in made.items():
+        if path.suffix == ".png":
+            picture = plt.imread(path)
+            assert picture.shape[1] >= pictures.WIDTH, name
+            assert len(np.unique(picture.reshape(-1, picture.shape[2]), axis=0)) > 50, f"{name} is blank"
+
+
+def test_results_without_pages_leave_their_pictures_as_they_are(tmp_path, capsys):
+    figure = tmp_path / "results" / "figures" / "answer.png"
+    figure.parent.mkdir(parents=True)
+    figure.write_bytes(b"drawn")
+    pictures.pictures(tmp_path / "results", tmp_path)
+    assert [path.name for path in tmp_path.glob("*.*")] == ["answer.png"]
+    assert (tmp_path / "answer.png").read_bytes() == b"drawn"
+    assert capsys.readouterr().out.count("there is no") == 5
