@@ -17,6 +17,8 @@ from flexsurr.workflow.plan import Plan
 
 CONFIGURATION = ("config/config.yaml", "config/presets/quick.yaml")
 SAID = "snakemake.out"
+NOWHERE = "http://127.0.0.1:9"
+"""A tracking server that nobody runs: nothing listens there, which is known at once."""
 
 
 @dataclass
@@ -79,6 +81,10 @@ class Project:
             inner = inner.setdefault(key, {}) if isinstance(inner, dict) else inner[key]
         inner[last] = value
         path.write_text(yaml.safe_dump(content))
+
+    def tell_no_page(self) -> None:
+        """Make results without a page of runs, where no test looks at it: it takes seconds of each run."""
+        self.change("config/config.yaml", "tracking.uri", NOWHERE)
 
     def stop(self) -> None:
         """End whatever of this project still runs."""

@@ -8,7 +8,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 import yaml
-from project import CONFIGURATION
+from project import CONFIGURATION, NOWHERE
 
 from flexsurr.config.settings import load
 from flexsurr.report.catalogue import FIGURES, TABLES
@@ -79,7 +79,7 @@ LEARNT = {
             [6],
             {"trials": 1, **FLOWN},
         ),
-        ("config/config.yaml", "tracking.uri", "http://127.0.0.1:9", {}),
+        ("config/config.yaml", "tracking.uri", NOWHERE, {}),
         ("config/config.yaml", "timing.cores", 1, {}),
     ],
 )
@@ -209,7 +209,7 @@ def test_a_deleted_tracking_store_brings_nothing_back(copy_of_quick):
     assert copy_of_quick.scheduled() == {}
 
 
-@pytest.mark.parametrize("uri", [None, "http://127.0.0.1:9"])
+@pytest.mark.parametrize("uri", [None, NOWHERE])
 def test_a_study_that_is_added_is_built_at_once(copy_of_quick, uri):
     copy_of_quick.change("config/config.yaml", "studies", [BEAM, "wing", "wing_unit"])
     copy_of_quick.change("config/config.yaml", "tracking.uri", uri)
@@ -221,7 +221,7 @@ def test_a_study_that_is_added_is_built_at_once(copy_of_quick, uri):
 
 
 def test_without_a_store_results_are_made_all_the_same(copy_of_quick):
-    copy_of_quick.change("config/config.yaml", "tracking.uri", "http://127.0.0.1:9")
+    copy_of_quick.change("config/config.yaml", "tracking.uri", NOWHERE)
     copy_of_quick.change(SWEEP, "spaces.1.hidden", [[4]])
     output = copy_of_quick.run_well(f"results/selected/{BEAM}.json")
     assert "results are made without it" in output

@@ -39,6 +39,7 @@ def one_by_one(make_project):
     project = make_project()
     project.change(PRESET, "batches", SINGLE)
     project.change(PRESET, f"overrides.{BEAM}.variants", ["hamiltonian"])
+    project.tell_no_page()
     project.run_well(TARGETS[0])
     return project
 

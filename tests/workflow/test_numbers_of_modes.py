@@ -15,6 +15,7 @@ MODELS = {"rom", "polynomial_2", "polynomial_2_sparse", "network_4_atan", "netwo
 def made(make_project):
     """That of the quick preset, whose integrators need no compiling."""
     project = make_project()
+    project.tell_no_page()
     project.change("config/presets/quick.yaml", "studies", [STUDY])
     project.run_well()
     return project

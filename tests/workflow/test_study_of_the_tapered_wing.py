@@ -14,6 +14,7 @@ SCIPY = {"method": "scipy_radau", "step_s": None}
 def wing(make_project):
     """Its study, with little of everything."""
     project = make_project()
+    project.tell_no_page()
     preset, sweep = "config/presets/quick.yaml", f"config/sweeps/{STUDY}.yaml"
     project.change(preset, "studies", [STUDY])
     project.change(sweep, "spaces.0.degree", [4])
