@@ -75,7 +75,7 @@ def run_block(model: Any, integrator: Integrator, t: Array, x0: Array) -> tuple[
     x[0, :, :count] = x0.T
     x[0, :, count:] = x0[-1][:, None]  # what fills the block does as its last trajectory
     method = _METHODS[integrator.method](SideBySide(dimension(d)))
-    work = np.empty(LANES * _rows[type(model.kernel)])
+    work = aligned(LANES * _rows[type(model.kernel)])
     rows = np.full(LANES, t.size)
     end_s = np.full(LANES, t[-1])
     evaluations, steps = run_side_by_side(
@@ -87,6 +87,18 @@ def run_block(model: Any, integrator: Integrator, t: Array, x0: Array) -> tuple[
         x[rows[lane] :, :, lane] = np.nan
         outcomes.append(from_compiled(int(rows[lane]), float(end_s[lane]), evaluations, steps, status))
     return np.ascontiguousarray(x[:, :, :count].transpose(2, 0, 1)), outcomes
+
+
+_LINE = 64
+"""Bytes of a line of the cache, and of the longest vectors."""
+
+
+@njit(cache=True, error_model="numpy")
+def aligned(n):
+    """(n,) numbers from the start of a line on: a vector that lies across two lines is fetched twice."""
+    room = np.empty(n + _LINE // 8)
+    first = (-(room.ctypes.data // 8)) % (_LINE // 8)
+    return room[first : first + n]
 
 
 @njit(error_model="numpy", fastmath=FLOATING_POINT)
@@ -105,10 +117,11 @@ def run_side_by_side(method, kernel, t, x, longest_step, work, rows, end_s):
     `rows` and `end_s` (LANES,) are set for each trajectory that leaves the finite numbers, to the rows
     filled and the time of its last finite state. Returns evaluations and steps of each trajectory.
     """
-    # a constant width, as in `run_fixed_step`
+    # a constant width, as in `run_fixed_step`; in one piece, rows and state are seen not to overlap
     d = states(method.constant, x[0])
-    scratch = np.empty((method.rows, d))
-    state = np.empty(d)
+    room = aligned((method.rows + 1) * d)
+    scratch = room[: method.rows * d].reshape((method.rows, d))
+    state = room[method.rows * d :]
     for i in range(d):
         state[i] = x[0, i]
     evaluations = 0

@@ -154,40 +154,54 @@ def _jacobian_of_oscillator(kernel, t, x, dx, jac, work):
     return 0
 
 
-@implements_rhs_of_block(OscillatorPolynomial, rows=2)
+@implements_rhs_of_block(OscillatorPolynomial, rows=1)
 def _block_of_oscillators(kernel, t, x, dx, work):
     step, w, half_dw_ds, dv_ds = kernel
-    # the inverse mass and the potential in the places of their rates, s and the kinetic part in the scratch
     n = w.size
-    odd = n % 2
-    of_w, of_kinetic, of_potential = w[n - 1], half_dw_ds[n - 1], dv_ds[n - 1]
-    for b in range(LANES):
-        work[b] = x[b] if step == 1.0 else x[b] * x[b]
-        work[LANES + b] = of_kinetic
-        dx[b] = of_w
-        dx[LANES + b] = of_potential
-    if not odd:
-        of_w, of_kinetic, of_potential = w[n - 2], half_dw_ds[n - 2], dv_ds[n - 2]
+    w_0, w_1, w_2 = w[0], w[1], w[2]
+    kinetic_0, kinetic_1, kinetic_2 = half_dw_ds[0], half_dw_ds[1], half_dw_ds[2]
+    potential_0, potential_1, potential_2 = dv_ds[0], dv_ds[1], dv_ds[2]
+    if n == _LEAST:
+        # all of it in registers
         for b in range(LANES):
-            s = work[b]
-            dx[b] = dx[b] * s + of_w
-            work[LANES + b] = work[LANES + b] * s + of_kinetic
-            dx[LANES + b] = dx[LANES + b] * s + of_potential
-    # two terms at a time: half the loads and stores
-    for k in range(n - 3 + odd, 0, -2):
+            q, p = x[b], x[LANES + b]
+            s = q if step == 1.0 else q * q
+            ds_dq = 1.0 if step == 1.0 else 2.0 * q
+            kinetic = (kinetic_2 * s + kinetic_1) * s + kinetic_0
+            potential = (potential_2 * s + potential_1) * s + potential_0
+            dx[b] = ((w_2 * s + w_1) * s + w_0) * p
+            dx[LANES + b] = -ds_dq * (p * p * kinetic + potential)
+        return
+    # the inverse mass and the potential in the places of their rates, the kinetic part in the scratch
+    upper_w, upper_kinetic, upper_potential = w[n - 1], half_dw_ds[n - 1], dv_ds[n - 1]
+    begun = n - 2
+    if n % 2 == 0:  # two terms at a time, half the loads and stores, want an odd number
+        upper_w = upper_kinetic = upper_potential = 0.0
+        begun = n - 1
+    lower_w, lower_kinetic, lower_potential = w[begun], half_dw_ds[begun], dv_ds[begun]
+    for b in range(LANES):
+        s = x[b] if step == 1.0 else x[b] * x[b]
+        dx[b] = upper_w * s + lower_w
+        work[b] = upper_kinetic * s + lower_kinetic
+        dx[LANES + b] = upper_potential * s + lower_potential
+    for k in range(begun - 1, _LEAST, -2):
         upper_w, lower_w = w[k], w[k - 1]
         upper_kinetic, lower_kinetic = half_dw_ds[k], half_dw_ds[k - 1]
         upper_potential, lower_potential = dv_ds[k], dv_ds[k - 1]
         for b in range(LANES):
-            s = work[b]
+            s = x[b] if step == 1.0 else x[b] * x[b]
             dx[b] = (dx[b] * s + upper_w) * s + lower_w
-            work[LANES + b] = (work[LANES + b] * s + upper_kinetic) * s + lower_kinetic
+            work[b] = (work[b] * s + upper_kinetic) * s + lower_kinetic
             dx[LANES + b] = (dx[LANES + b] * s + upper_potential) * s + lower_potential
     for b in range(LANES):
-        p = x[LANES + b]
-        ds_dq = 1.0 if step == 1.0 else 2.0 * x[b]
-        dx[b] *= p
-        dx[LANES + b] = -ds_dq * (p * p * work[LANES + b] + dx[LANES + b])
+        q, p = x[b], x[LANES + b]
+        s = q if step == 1.0 else q * q
+        ds_dq = 1.0 if step == 1.0 else 2.0 * q
+        inverse_mass = ((dx[b] * s + w_2) * s + w_1) * s + w_0
+        kinetic = ((work[b] * s + kinetic_2) * s + kinetic_1) * s + kinetic_0
+        potential = ((dx[LANES + b] * s + potential_2) * s + potential_1) * s + potential_0
+        dx[b] = inverse_mass * p
+        dx[LANES + b] = -ds_dq * (p * p * kinetic + potential)
 
 
 class PolynomialKernel(NamedTuple):

@@ -9,13 +9,17 @@ from random_surrogates import SCALING, even_network, network, polynomial
 from flexsurr.config.study import Integrator
 from flexsurr.simulation import evaluate, simulate, simulate_ensemble
 from flexsurr.simulation.dimension import LANES
-from flexsurr.simulation.side_by_side import Block
+from flexsurr.simulation.side_by_side import Block, aligned
 from flexsurr.surrogates import HNN, MLP, compiled
 
 EVEN = polynomial(2, 8, "even")
 FORMS = {
+    "polynomial of few terms": polynomial(2, 6, "even"),
     "polynomial, an even number of terms": EVEN,
     "an odd number": polynomial(2, 10, "even"),
+    "a pair in the loop, even": polynomial(2, 12, "even"),
+    "a pair in the loop, odd": polynomial(2, 14, "even"),
+    "few odd powers": polynomial(2, 3, "mechanical"),
     "odd powers": polynomial(2, 7, "mechanical"),
     "hnn, quotients in pairs": network(HNN, 2, (7,), "half_log"),
     "hnn, others": network(HNN, 2, (8,), "softplus"),
@@ -37,6 +41,12 @@ def test_the_equations_of_a_block_are_those_of_each(surrogate):
     evaluate(Block(model.kernel), 0.0, x.T.ravel(), dx, np.full(4 * LANES, np.nan))
     expected = surrogate.derivative(0.0, x)
     assert np.all(np.abs(dx.reshape(2, -1).T - expected) <= 1e-12 * np.abs(expected).max(axis=0))
+
+
+def test_what_is_aligned_begins_a_line_of_the_cache():
+    kept = [aligned(n) for n in (1, 7, 2 * LANES, 2 * LANES + 3)]
+    assert [len(each) for each in kept] == [1, 7, 2 * LANES, 2 * LANES + 3]
+    assert {each.ctypes.data % 64 for each in kept} == {0}
 
 
 def test_each_is_the_trajectory_of_a_single_call():
