@@ -1,6 +1,7 @@
 """What a contributor is told to run is what is run."""
 
 import re
+from collections import Counter
 from pathlib import Path
 
 import yaml
@@ -39,3 +40,9 @@ def test_the_changelog_begins_with_what_is_not_released_and_has_the_version():
     titles = re.findall(r"^## (.*)$", (TOP / "CHANGELOG.md").read_text(), re.MULTILINE)
     assert titles[0] == "Unreleased"
     assert titles[1].split()[0] == flexsurr.__version__
+
+
+def test_no_two_files_of_tests_share_a_name():
+    """By it alone are they imported."""
+    names = Counter(path.name for path in (TOP / "tests").rglob("*.py") if path.name != "conftest.py")
+    assert [name for name, count in names.items() if count > 1] == []
