@@ -110,15 +110,15 @@ def runs(exponents: Exponents) -> tuple[NDArray[np.intp], NDArray[np.uint64]]:
     A row (factor, parent, first, length) says that in this order `length` monomials from `first` on are those
     from `parent` on, times the factor. Sorted by degree, then by their last variables, all monomials to some
     degree come in one run for each factor and degree: those that a factor makes are a whole stretch of an
-    earlier degree.
+    earlier degree. No piece holds what it is built from: `pull_back` may take its monomials in any order.
     """
     order = np.lexsort((*exponents.T, exponents.sum(axis=1)))
     pieces: list[list[int]] = []
-    for first, (parent, factor) in enumerate(zip(*factors(exponents[order]), strict=True), start=1):
-        if pieces and pieces[-1][0] == factor and pieces[-1][1] + pieces[-1][3] == parent:
+    for place, (parent, factor) in enumerate(zip(*factors(exponents[order]), strict=True), start=1):
+        if pieces and pieces[-1][:2] == [factor, parent - pieces[-1][3]] and parent < pieces[-1][2]:
             pieces[-1][3] += 1
         else:
-            pieces.append([int(factor), int(parent), first, 1])
+            pieces.append([int(factor), int(parent), place, 1])
     return order, np.array(pieces, dtype=np.uint64).reshape(-1, 4)
 
 

@@ -154,6 +154,7 @@ def mirrored_network(neurons: int, activation: str, seed: int = 0) -> NetworkPor
 
 PORT_HAMILTONIANS = {
     "one pair": port_polynomial(2, 3, even=False),
+    "one even pair": port_polynomial(2, 8, even=True),
     "even": port_polynomial(6, 4, even=True),
     "odd and even": port_polynomial(6, 3, even=False),
     "network of one pair": port_network(2, 5, "softplus"),

@@ -12,7 +12,9 @@ from flexsurr.surrogates.monomials import (
     factors,
     monomials_to_degree,
     products,
+    pull_back,
     runs,
+    write_monomials,
 )
 
 
@@ -98,6 +100,26 @@ def test_runs_rebuild_a_set_in_one_piece_for_each_factor_and_degree(parity, piec
     for factor, parent, first, length in found.astype(int):
         values[first : first + length] = values[parent : parent + length] * available[factor]
     np.testing.assert_allclose(values, evaluate_monomials(exponents[order], x), rtol=1e-14)
+
+
+@pytest.mark.parametrize("variables", [1, 2, 3])
+@pytest.mark.parametrize("parity", ["all", "even"])
+def test_pulling_back_is_the_derivative_by_each_variable(variables, parity):
+    """Of Σ a φ. With one variable, monomials of all degrees have the same factor."""
+    exponents = np.vstack([np.zeros((1, variables), dtype=np.int64), monomials_to_degree(variables, 8)])
+    if parity == "even":
+        exponents = exponents[exponents.sum(axis=1) % 2 == 0]
+    rng, count = np.random.default_rng(variables), len(exponents)
+    x, by_monomial = rng.uniform(-1.0, 1.0, variables), rng.normal(size=count)
+    order, pieces = runs(exponents)
+    slopes = variables + variables * (variables + 1) // 2
+    phi = 2 * slopes
+    work = np.concatenate([x, np.zeros(phi - variables + count), by_monomial[order]])
+    write_monomials(pieces, variables, phi, work)
+    pull_back(pieces, variables, phi, phi + count, slopes, work)
+    lowered, tensor = differentiate(exponents)
+    expected = (tensor @ by_monomial) @ evaluate_monomials(lowered, x)
+    np.testing.assert_allclose(work[slopes : slopes + variables], expected, rtol=1e-11)
 
 
 @pytest.mark.parametrize(
