@@ -35,6 +35,7 @@ def prepared(quick, make_project):
     project = make_project(quick)
     (project.root / "config/sweeps/quick.yaml").write_text(LONG_SWEEP)
     project.change("config/presets/quick.yaml", "batches.trials_per_job", 1)
+    project.change("config/presets/quick.yaml", f"overrides.{BEAM}.variants", ["hamiltonian"])
     return project
 
 
