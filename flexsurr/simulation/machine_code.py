@@ -22,6 +22,8 @@ from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.dispatcher import Dispatcher
 
+from flexsurr.simulation.on_demand import compiling
+
 LOCKS = "compiling"
 """The file in numba's folder of which each overload that is being compiled has one byte locked."""
 
@@ -68,7 +70,7 @@ def _number(content: bytes) -> int:
 def _compile(dispatcher: Any, sig: Any) -> Any:
     """What numba does, while no other process compiles the same."""
     # numba holds this lock anyway; taken first, no thread waits for it with an overload locked
-    with global_compiler_lock:
+    with global_compiler_lock, compiling(dispatcher, sig):
         if isinstance(dispatcher._cache, FunctionCache):
             file = dispatcher._cache._cache_file
             key = dispatcher._cache._index_key(sig, dispatcher.targetctx.codegen())

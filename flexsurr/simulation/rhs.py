@@ -19,8 +19,10 @@ from numpy.typing import NDArray
 
 from flexsurr.kernel_cache import keeps, not_compiled
 from flexsurr.simulation.machine_code import compile_once
+from flexsurr.simulation.on_demand import translate_on_demand
 
 compile_once()
+translate_on_demand()
 
 Array = NDArray[np.float64]
 
