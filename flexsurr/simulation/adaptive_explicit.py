@@ -20,7 +20,7 @@ from flexsurr.simulation.unrolled import dop853_dense, dop853_error, dop853_step
 _EPSILON = float(np.finfo(np.float64).eps)
 
 
-@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)
+@njit(cache=True, error_model="numpy", fastmath=ORDERED, _nrt=False)
 def scaled_norm(v, x, rtol, atol):
     """Root mean square of v_i / (atol + rtol |x_i|)."""
     total = 0.0
@@ -79,7 +79,7 @@ def _interpolate(theta, x, dense, sample):
         sample[i] = x[i] + theta * value
 
 
-@njit(error_model="numpy", _nrt=False)
+@njit(error_model="numpy", _nrt=False, forceinline=True)
 def _integrate(constant, kernel, t, x, rtol, atol, work, k, dense, y, now, new):
     """As `run_dop853`, with workspaces; apart from it because reference counts in the loop cost time."""
     d = states(constant, x[0])

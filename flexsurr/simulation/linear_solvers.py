@@ -11,7 +11,7 @@ from numba import njit
 from flexsurr.simulation.rhs import FLOATING_POINT
 
 
-@njit(error_model="numpy", fastmath=FLOATING_POINT, _nrt=False)
+@njit(error_model="numpy", fastmath=FLOATING_POINT, _nrt=False, cache=True)
 def factorise(a, pivots):
     """Overwrite a (d, d) by its factors, the diagonal by its reciprocals; False if a is singular."""
     d = pivots.size
@@ -38,7 +38,7 @@ def factorise(a, pivots):
     return True
 
 
-@njit(error_model="numpy", fastmath=FLOATING_POINT, _nrt=False)
+@njit(error_model="numpy", fastmath=FLOATING_POINT, _nrt=False, cache=True)
 def solve(a, pivots, b):
     """Overwrite b (d,) by the solution of the system whose factors are `a` and `pivots`."""
     d = pivots.size
@@ -87,7 +87,7 @@ def solve_positive_definite(a, b, n):
         b[i] = total * a[i * n + i]
 
 
-@njit(fastmath=FLOATING_POINT, error_model="numpy", _nrt=False)
+@njit(fastmath=FLOATING_POINT, error_model="numpy", _nrt=False, cache=True)
 def solve_packed(work, matrix, b, r):
     """Overwrite b (r,) at its offset by the solution of the packed system at `matrix`, and that by L D Lᵀ.
 
@@ -114,7 +114,7 @@ def solve_packed(work, matrix, b, r):
     _solve_upper(work, matrix, b, r)
 
 
-@njit(fastmath=FLOATING_POINT, error_model="numpy", _nrt=False)
+@njit(fastmath=FLOATING_POINT, error_model="numpy", _nrt=False, cache=True)
 def _solve_upper(work, matrix, b, r):
     """Overwrite b by the solution of D Lᵀ x = b, for what `solve_packed` leaves at `matrix`."""
     for i in range(r - 1, -1, -1):
@@ -124,7 +124,7 @@ def _solve_upper(work, matrix, b, r):
         work[b + i] = total
 
 
-@njit(fastmath=FLOATING_POINT, error_model="numpy", _nrt=False)
+@njit(fastmath=FLOATING_POINT, error_model="numpy", _nrt=False, cache=True)
 def invert_packed(work, matrix, inverse, r):
     """Write the inverse (r, r) of the packed matrix at its offset, and overwrite that by L D Lᵀ."""
     for i in range(r):

@@ -55,16 +55,27 @@ def compiling(dispatcher: Any, sig: Any) -> Iterator[None]:
 
 
 class OnDemand(JITCodeLibrary):  # type: ignore[misc]
-    """What a function and those linked into it are compiled to; `translated` once it has machine code."""
+    """What a function and those linked into it are compiled to.
 
-    translated = False
+    `inlined`: always, by what calls it, so that it is optimised there alone. Others are optimised before: the
+    size that they come to says whether they are inlined. `translated`: it has machine code.
+    """
+
+    inlined = translated = False
 
     def finalize(self) -> None:
         """Link what it calls. Nothing may be added any more."""
         self._raise_if_finalized()
+        self.inlined = any(
+            b"alwaysinline" in attributes
+            for function in self._final_module.functions
+            for attributes in function.attributes
+        )
         for library in dict.fromkeys(self._linking_libraries):
             self._reload_init.update(library._reload_init)
             self._final_module.link_in(library._get_module_for_linking(), preserve=True)
+        if not self.inlined:
+            self._optimize_final_module()
         self._finalized = True
 
     def get_pointer_to_function(self, name: str) -> int:
@@ -80,7 +91,8 @@ class OnDemand(JITCodeLibrary):  # type: ignore[misc]
 
     def _translate(self) -> None:
         self.translated = True
-        self._optimize_final_module()
+        if self.inlined:
+            self._optimize_final_module()
         self._final_module.verify()
         self._finalize_final_module()
         for variable in self._final_module.global_variables:

@@ -44,7 +44,7 @@ _SLOW = 1e-3  # a faster contraction keeps its Jacobian
 _EPSILON = float(np.finfo(np.float64).eps)
 
 
-@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)
+@njit(cache=True, error_model="numpy", fastmath=ORDERED, _nrt=False)
 def _weights(theta):
     """Values at θ of the polynomials that are 1 at one node, 0 at the others and at θ = 0."""
     u = theta - _C[0]
@@ -57,7 +57,7 @@ def _weights(theta):
     )
 
 
-@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)
+@njit(cache=True, error_model="numpy", fastmath=ORDERED, _nrt=False)
 def _extrapolate(z, ratio, guess):
     """Continue the last step's stages z (3, d) into a next one that is `ratio` times as long."""
     for s in range(_STAGES):
@@ -66,7 +66,7 @@ def _extrapolate(z, ratio, guess):
             guess[s, i] = first * z[0, i] + second * z[1, i] + (third - 1.0) * z[2, i]
 
 
-@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)
+@njit(cache=True, error_model="numpy", fastmath=ORDERED, _nrt=False)
 def _factorise(h, jac, real, real_pivots, complex_, complex_pivots):
     """Factorise μ/h I − J for both eigenvalues; False if one is singular."""
     d = jac.shape[0]
@@ -123,7 +123,7 @@ def _newton(kernel, t, h, x, z, f, w, v, y, real, real_pivots, complex_, complex
     return False, _MOST_ITERATIONS, rate
 
 
-@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)
+@njit(cache=True, error_model="numpy", fastmath=ORDERED, _nrt=False)
 def _estimate(h, x, new, z, slope, error, real, real_pivots, rtol, atol):
     """Norm of the error estimate, left in `error`: (8.19) with f at the beginning as `slope`, or (8.20)."""
     for i in range(x.size):
@@ -139,7 +139,7 @@ def _estimate(h, x, new, z, slope, error, real, real_pivots, rtol, atol):
     return np.sqrt(square / x.size)
 
 
-@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)
+@njit(cache=True, error_model="numpy", fastmath=ORDERED, _nrt=False)
 def _growth(error, h, last_error, last_h):
     """Ratio of the next step to this one, before safety; predictive, (8.25)."""
     if error == 0.0:
@@ -150,7 +150,7 @@ def _growth(error, h, last_error, last_h):
     return classic * min(1.0, h / last_h * (last_error / error) ** 0.25)
 
 
-@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)
+@njit(error_model="numpy", fastmath=ORDERED, _nrt=False, forceinline=True)
 def _integrate(
     kernel, t, x, rtol, atol, work,
     jac, real, complex_, real_pivots, complex_pivots,

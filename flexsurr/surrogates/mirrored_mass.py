@@ -85,7 +85,7 @@ class MirroredNetworkKernel(NamedTuple):
     neurons: int
 
 
-@njit(**OPTIONS)
+@njit(cache=True, **OPTIONS)
 def transform(work, at, h, total):
     """The Walsh–Hadamard transform over the 2ᵏ pieces of h numbers from `at` on, in place."""
     span = h

@@ -122,7 +122,7 @@ def runs(exponents: Exponents) -> tuple[NDArray[np.intp], NDArray[np.uint64]]:
     return order, np.array(pieces, dtype=np.uint64).reshape(-1, 4)
 
 
-@njit(fastmath=FLOATING_POINT, error_model="numpy", _nrt=False)
+@njit(fastmath=FLOATING_POINT, error_model="numpy", _nrt=False, cache=True)
 def write_monomials(pieces, d, phi, work):
     """The monomials of the d variables at `work`'s start, from `phi` on, built in the pieces of `runs`.
 
@@ -142,7 +142,7 @@ def write_monomials(pieces, d, phi, work):
             work[first + k] = work[parent + k] * factor
 
 
-@njit(fastmath=FLOATING_POINT, error_model="numpy", _nrt=False)
+@njit(fastmath=FLOATING_POINT, error_model="numpy", _nrt=False, cache=True)
 def pull_back(pieces, d, phi, adjoint, slopes, work):
     """From derivatives by each monomial, at `adjoint`, those by each of the d variables, left at `slopes`.
 
@@ -169,7 +169,7 @@ def pull_back(pieces, d, phi, adjoint, slopes, work):
             place += offset(1)
 
 
-@njit(fastmath=FLOATING_POINT, error_model="numpy", _nrt=False)
+@njit(fastmath=FLOATING_POINT, error_model="numpy", _nrt=False, cache=True)
 def pull_back_along(pieces, d, phi, adjoint, slopes, variable, tangents, work):
     """∂/∂x_variable of what `pull_back` has left at `slopes`, left at the start of `tangents`.
 

@@ -133,7 +133,7 @@ class PortHamiltonian(Surrogate):
         return count, states[:r], states[r:], self.scaling.rates(count)[:r]
 
 
-@njit(**OPTIONS)
+@njit(cache=True, **OPTIONS)
 def write_kinetic_adjoint(rates, r, work, adjoint):
     """∂/∂M of ½ q̇ᵀ M q̇ by the packed entries of M, at `adjoint`; `rates` begins with q̇ (r,)."""
     e = adjoint
@@ -144,7 +144,7 @@ def write_kinetic_adjoint(rates, r, work, adjoint):
             e += offset(1)
 
 
-@njit(**OPTIONS)
+@njit(cache=True, **OPTIONS)
 def jacobian_of_motion(stiffness, damping, work, inverse, turned, curvature, jac):
     """∂ẋ/∂x into jac (2r, 2r), from matrices (r, r) row by row at their offsets in `work`.
 
@@ -171,7 +171,7 @@ def jacobian_of_motion(stiffness, damping, work, inverse, turned, curvature, jac
             jac[r + k, r + m] = by_p
 
 
-@njit(**OPTIONS)
+@njit(cache=True, **OPTIONS)
 def springs_and_dampers(stiffness, damping, x, dx):
     """Add −K q − C q̇ to ṗ; both (r, r) row by row, q̇ taken from `dx` (2r,)."""
     r = x.size // 2

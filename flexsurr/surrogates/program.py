@@ -48,7 +48,7 @@ class Program(NamedTuple):
     result: NDArray[np.int64]
 
 
-@njit(**OPTIONS)
+@njit(cache=True, **OPTIONS)
 def _of_one(op, x):
     if op == TANH:
         return math.tanh(x)
@@ -85,7 +85,7 @@ def _of_one(op, x):
     return np.nan
 
 
-@njit(**OPTIONS)
+@njit(cache=True, **OPTIONS)
 def _of_two(op, x, y):
     if op == MUL:
         return x * y
@@ -116,7 +116,7 @@ def _of_two(op, x, y):
     return np.nan
 
 
-@njit(**OPTIONS)
+@njit(cache=True, **OPTIONS)
 def _multiply(m, out, a, b, rows, inner, columns):
     """(rows, inner) at a times (inner, columns) at b."""
     for i in range(rows):
@@ -128,7 +128,7 @@ def _multiply(m, out, a, b, rows, inner, columns):
                 m[out + i * columns + j] += factor * m[b + k * columns + j]
 
 
-@njit(**OPTIONS)
+@njit(cache=True, **OPTIONS)
 def _solve(m, matrix, b, n, columns):
     """Overwrite b (n, columns) by the solution for the matrix (n, n), and that by its elimination."""
     for k in range(n):
