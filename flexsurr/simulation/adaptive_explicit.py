@@ -79,7 +79,7 @@ def _interpolate(theta, x, dense, sample):
         sample[i] = x[i] + theta * value
 
 
-@njit(error_model="numpy", _nrt=False, forceinline=True)
+@njit(error_model="numpy", _nrt=False)
 def _integrate(constant, kernel, t, x, rtol, atol, work, k, dense, y, now, new):
     """As `run_dop853`, with workspaces; apart from it because reference counts in the loop cost time."""
     d = states(constant, x[0])

@@ -68,7 +68,7 @@ class OnDemand(JITCodeLibrary):  # type: ignore[misc]
         self._raise_if_finalized()
         self.inlined = any(
             b"alwaysinline" in attributes
-            for function in self._final_module.functions
+            for function in self.get_defined_functions()
             for attributes in function.attributes
         )
         for library in dict.fromkeys(self._linking_libraries):

@@ -150,7 +150,7 @@ def _growth(error, h, last_error, last_h):
     return classic * min(1.0, h / last_h * (last_error / error) ** 0.25)
 
 
-@njit(error_model="numpy", fastmath=ORDERED, _nrt=False, forceinline=True)
+@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)
 def _integrate(
     kernel, t, x, rtol, atol, work,
     jac, real, complex_, real_pivots, complex_pivots,
