@@ -9,6 +9,7 @@ functions that stand in a file, so the file is written once, by
 and kept with the sources; a test compares it with what this module writes.
 """
 
+from collections.abc import Iterable
 from math import prod
 from pathlib import Path
 
@@ -42,8 +43,11 @@ from flexsurr.simulation.rhs import rhs
 # Without reference counts, which functions that do not allocate can spare: they cost more than the sums.
 _DECORATOR = '@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)'
 _EXACT = '@njit(error_model="numpy", _nrt=False)'
+# What names no kernel is compiled once for all of them.
+_KEPT = '@njit(cache=True, error_model="numpy", fastmath=ORDERED, _nrt=False)'
 # A step is put into its caller, where it is seen which rows are which: only then are its sums vectorised.
 _INLINED = '@njit(error_model="numpy", fastmath=ORDERED, _nrt=False, forceinline=True)'
+_KEPT_INLINED = '@njit(cache=True, error_model="numpy", fastmath=ORDERED, _nrt=False, forceinline=True)'
 
 
 def _sum(row: Row, scale: str = "") -> str:
@@ -71,32 +75,45 @@ def _names(rows: range | list[int]) -> list[str]:
     return ["d = states(constant, x)", *(f"k{j} = k[{j}]" for j in rows)]
 
 
-def _stages(tableau: ExplicitTableau, first: int, skip: int) -> list[str]:
-    """Evaluate the stages of `tableau`, numbered from `first`, without its `skip` leading ones."""
+def _sums(name: str, rows: Iterable[Row]) -> list[str]:
+    """Of each row x + h Σ_j row_j k_j, as functions `name`_0, `name`_1, …"""
+    return [
+        _function(
+            f"{name}_{number}",
+            "h, x, k, y, constant",
+            "Write x and a sum of stages into y, which may be x.",
+            [*_names(list(row)), "for i in range(d):", f"    y[i] = x[i]{_sum(row, 'h')}"],
+            _KEPT_INLINED,
+        )
+        for number, row in enumerate(rows)
+    ]
+
+
+def _stages(sums: str, nodes: Iterable[float], first: int) -> list[str]:
+    """Evaluate at `nodes` the stages whose states are `sums`, numbered from `first`."""
     lines = []
-    for number in range(skip, len(tableau.c)):
+    for number, node in enumerate(nodes):
         lines += [
-            "for i in range(d):",
-            f"    y[i] = x[i]{_sum(tableau.a[number], 'h')}",
-            f"rhs(kernel, t + {tableau.c[number]!r} * h, y, k{first + number}, work)",
+            f"{sums}_{number}(h, x, k, y, constant)",
+            f"rhs(kernel, t + {node!r} * h, y, k[{first + number}], work)",
         ]
     return lines
 
 
-def _step(name: str, tableau: ExplicitTableau) -> str:
+def _step(name: str, tableau: ExplicitTableau) -> list[str]:
+    stages = len(tableau.c)
     body = [
-        *_names(range(len(tableau.c))),
-        *_stages(tableau, first=0, skip=1),
-        "for i in range(d):",
-        f"    x_new[i] = x[i]{_sum(tableau.b, 'h')}",
+        *_stages(name, tableau.c[1:], first=1),
+        f"{name}_{stages - 1}(h, x, k, x_new, constant)",
     ]
-    return _function(
+    step = _function(
         name,
         "kernel, t, h, x, x_new, k, y, work, constant",
         "Write the state at t + h into x_new, which may be x.",
         body,
         _INLINED,
     )
+    return [*_sums(name, [*tableau.a[1:], tableau.b]), step]
 
 
 def _error(name: str, tableau: EmbeddedTableau) -> str:
@@ -118,31 +135,39 @@ def _error(name: str, tableau: EmbeddedTableau) -> str:
         "x, x_new, k, rtol, atol, constant",
         "Sums of squares of the two error estimates over h, scaled.",
         body,
+        _KEPT,
     )
 
 
-def _dense(name: str, tableau: EmbeddedTableau) -> str:
+def _dense(name: str, tableau: EmbeddedTableau) -> list[str]:
     end = len(tableau.method.c)
-    evaluated = [end + 1 + n for n in range(len(tableau.further.c))]
-    used = sorted({0, end, *evaluated}.union(*tableau.further.a, *tableau.dense))
     rows = [
         "dense[0, i] = x_new[i] - x[i]",
         "dense[1, i] = h * k0[i] - dense[0, i]",
         f"dense[2, i] = 2.0 * dense[0, i] - h * (k{end}[i] + k0[i])",
         *(f"dense[{3 + n}, i] = h * ({_sum(row)})" for n, row in enumerate(tableau.dense)),
     ]
-    body = [
-        *_names(used),
-        *_stages(tableau.further, first=end + 1, skip=0),
-        "for i in range(d):",
-        *(f"    {row}" for row in rows),
-    ]
-    return _function(
+    coefficients = _function(
+        f"{name}_coefficients",
+        "h, x, x_new, dense, k, constant",
+        "Write the dense output's coefficients (7, d) from all stages.",
+        [
+            *_names(sorted({0, end}.union(*tableau.dense))),
+            "for i in range(d):",
+            *(f"    {row}" for row in rows),
+        ],
+        _KEPT,
+    )
+    stages = _function(
         name,
         "kernel, t, h, x, x_new, dense, k, y, work, constant",
         f"Write the dense output's coefficients (7, d); k[{end}] holds f at the end of the step.",
-        body,
+        [
+            *_stages(name, tableau.further.c, first=end + 1),
+            f"{name}_coefficients(h, x, x_new, dense, k, constant)",
+        ],
     )
+    return [*_sums(name, tableau.further.a), coefficients, stages]
 
 
 def _extrapolation(tableau: ImplicitTableau) -> list[Row]:
@@ -165,7 +190,9 @@ def _extrapolate(name: str, tableau: ImplicitTableau) -> str:
         *(f"    new{s} ={_sum(row)}" for s, row in enumerate(_extrapolation(tableau))),
         *(f"    k{s}[i] = new{s}" for s in range(count)),
     ]
-    return _function(name, "x, k, constant", "Replace the last step's stages by a guess of the next's.", body)
+    return _function(
+        name, "x, k, constant", "Replace the last step's stages by a guess of the next's.", body, _KEPT
+    )
 
 
 def _sweep(name: str, tableau: ImplicitTableau) -> str:
@@ -223,10 +250,10 @@ def source() -> str:
     return "\n\n".join(
         [
             _HEAD,
-            _step("rk4_step", RK4),
-            _step("dop853_step", DOP853.method),
+            *_step("rk4_step", RK4),
+            *_step("dop853_step", DOP853.method),
             _error("dop853_error", DOP853),
-            _dense("dop853_dense", DOP853),
+            *_dense("dop853_dense", DOP853),
             *_collocation("gauss_legendre_4", GAUSS_LEGENDRE_4),
             *_collocation("gauss_legendre_6", GAUSS_LEGENDRE_6),
         ]

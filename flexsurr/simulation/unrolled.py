@@ -12,34 +12,183 @@ from flexsurr.simulation.dimension import ORDERED, states
 from flexsurr.simulation.rhs import rhs
 
 
-@njit(error_model="numpy", fastmath=ORDERED, _nrt=False, forceinline=True)
-def rk4_step(kernel, t, h, x, x_new, k, y, work, constant):
-    """Write the state at t + h into x_new, which may be x."""
+@njit(cache=True, error_model="numpy", fastmath=ORDERED, _nrt=False, forceinline=True)
+def rk4_step_0(h, x, k, y, constant):
+    """Write x and a sum of stages into y, which may be x."""
+    d = states(constant, x)
+    k0 = k[0]
+    for i in range(d):
+        y[i] = x[i] + (h * 0.5) * k0[i]
+
+
+@njit(cache=True, error_model="numpy", fastmath=ORDERED, _nrt=False, forceinline=True)
+def rk4_step_1(h, x, k, y, constant):
+    """Write x and a sum of stages into y, which may be x."""
+    d = states(constant, x)
+    k1 = k[1]
+    for i in range(d):
+        y[i] = x[i] + (h * 0.5) * k1[i]
+
+
+@njit(cache=True, error_model="numpy", fastmath=ORDERED, _nrt=False, forceinline=True)
+def rk4_step_2(h, x, k, y, constant):
+    """Write x and a sum of stages into y, which may be x."""
+    d = states(constant, x)
+    k2 = k[2]
+    for i in range(d):
+        y[i] = x[i] + (h * 1.0) * k2[i]
+
+
+@njit(cache=True, error_model="numpy", fastmath=ORDERED, _nrt=False, forceinline=True)
+def rk4_step_3(h, x, k, y, constant):
+    """Write x and a sum of stages into y, which may be x."""
     d = states(constant, x)
     k0 = k[0]
     k1 = k[1]
     k2 = k[2]
     k3 = k[3]
     for i in range(d):
-        y[i] = x[i] + (h * 0.5) * k0[i]
-    rhs(kernel, t + 0.5 * h, y, k1, work)
-    for i in range(d):
-        y[i] = x[i] + (h * 0.5) * k1[i]
-    rhs(kernel, t + 0.5 * h, y, k2, work)
-    for i in range(d):
-        y[i] = x[i] + (h * 1.0) * k2[i]
-    rhs(kernel, t + 1.0 * h, y, k3, work)
-    for i in range(d):
-        x_new[i] = x[i] + (h * 0.16666666666666666) * k0[i] + (h * 0.3333333333333333) * k1[i] + (h * 0.3333333333333333) * k2[i] + (h * 0.16666666666666666) * k3[i]
+        y[i] = x[i] + (h * 0.16666666666666666) * k0[i] + (h * 0.3333333333333333) * k1[i] + (h * 0.3333333333333333) * k2[i] + (h * 0.16666666666666666) * k3[i]
 
 
 @njit(error_model="numpy", fastmath=ORDERED, _nrt=False, forceinline=True)
-def dop853_step(kernel, t, h, x, x_new, k, y, work, constant):
+def rk4_step(kernel, t, h, x, x_new, k, y, work, constant):
     """Write the state at t + h into x_new, which may be x."""
+    rk4_step_0(h, x, k, y, constant)
+    rhs(kernel, t + 0.5 * h, y, k[1], work)
+    rk4_step_1(h, x, k, y, constant)
+    rhs(kernel, t + 0.5 * h, y, k[2], work)
+    rk4_step_2(h, x, k, y, constant)
+    rhs(kernel, t + 1.0 * h, y, k[3], work)
+    rk4_step_3(h, x, k, x_new, constant)
+
+
+@njit(cache=True, error_model="numpy", fastmath=ORDERED, _nrt=False, forceinline=True)
+def dop853_step_0(h, x, k, y, constant):
+    """Write x and a sum of stages into y, which may be x."""
+    d = states(constant, x)
+    k0 = k[0]
+    for i in range(d):
+        y[i] = x[i] + (h * 0.05260015195876773) * k0[i]
+
+
+@njit(cache=True, error_model="numpy", fastmath=ORDERED, _nrt=False, forceinline=True)
+def dop853_step_1(h, x, k, y, constant):
+    """Write x and a sum of stages into y, which may be x."""
     d = states(constant, x)
     k0 = k[0]
     k1 = k[1]
+    for i in range(d):
+        y[i] = x[i] + (h * 0.0197250569845379) * k0[i] + (h * 0.0591751709536137) * k1[i]
+
+
+@njit(cache=True, error_model="numpy", fastmath=ORDERED, _nrt=False, forceinline=True)
+def dop853_step_2(h, x, k, y, constant):
+    """Write x and a sum of stages into y, which may be x."""
+    d = states(constant, x)
+    k0 = k[0]
     k2 = k[2]
+    for i in range(d):
+        y[i] = x[i] + (h * 0.02958758547680685) * k0[i] + (h * 0.08876275643042054) * k2[i]
+
+
+@njit(cache=True, error_model="numpy", fastmath=ORDERED, _nrt=False, forceinline=True)
+def dop853_step_3(h, x, k, y, constant):
+    """Write x and a sum of stages into y, which may be x."""
+    d = states(constant, x)
+    k0 = k[0]
+    k2 = k[2]
+    k3 = k[3]
+    for i in range(d):
+        y[i] = x[i] + (h * 0.2413651341592667) * k0[i] - (h * 0.8845494793282861) * k2[i] + (h * 0.924834003261792) * k3[i]
+
+
+@njit(cache=True, error_model="numpy", fastmath=ORDERED, _nrt=False, forceinline=True)
+def dop853_step_4(h, x, k, y, constant):
+    """Write x and a sum of stages into y, which may be x."""
+    d = states(constant, x)
+    k0 = k[0]
+    k3 = k[3]
+    k4 = k[4]
+    for i in range(d):
+        y[i] = x[i] + (h * 0.037037037037037035) * k0[i] + (h * 0.17082860872947386) * k3[i] + (h * 0.12546768756682242) * k4[i]
+
+
+@njit(cache=True, error_model="numpy", fastmath=ORDERED, _nrt=False, forceinline=True)
+def dop853_step_5(h, x, k, y, constant):
+    """Write x and a sum of stages into y, which may be x."""
+    d = states(constant, x)
+    k0 = k[0]
+    k3 = k[3]
+    k4 = k[4]
+    k5 = k[5]
+    for i in range(d):
+        y[i] = x[i] + (h * 0.037109375) * k0[i] + (h * 0.17025221101954405) * k3[i] + (h * 0.06021653898045596) * k4[i] - (h * 0.017578125) * k5[i]
+
+
+@njit(cache=True, error_model="numpy", fastmath=ORDERED, _nrt=False, forceinline=True)
+def dop853_step_6(h, x, k, y, constant):
+    """Write x and a sum of stages into y, which may be x."""
+    d = states(constant, x)
+    k0 = k[0]
+    k3 = k[3]
+    k4 = k[4]
+    k5 = k[5]
+    k6 = k[6]
+    for i in range(d):
+        y[i] = x[i] + (h * 0.03709200011850479) * k0[i] + (h * 0.17038392571223998) * k3[i] + (h * 0.10726203044637328) * k4[i] - (h * 0.015319437748624402) * k5[i] + (h * 0.008273789163814023) * k6[i]
+
+
+@njit(cache=True, error_model="numpy", fastmath=ORDERED, _nrt=False, forceinline=True)
+def dop853_step_7(h, x, k, y, constant):
+    """Write x and a sum of stages into y, which may be x."""
+    d = states(constant, x)
+    k0 = k[0]
+    k3 = k[3]
+    k4 = k[4]
+    k5 = k[5]
+    k6 = k[6]
+    k7 = k[7]
+    for i in range(d):
+        y[i] = x[i] + (h * 0.6241109587160757) * k0[i] - (h * 3.3608926294469414) * k3[i] - (h * 0.868219346841726) * k4[i] + (h * 27.59209969944671) * k5[i] + (h * 20.154067550477894) * k6[i] - (h * 43.48988418106996) * k7[i]
+
+
+@njit(cache=True, error_model="numpy", fastmath=ORDERED, _nrt=False, forceinline=True)
+def dop853_step_8(h, x, k, y, constant):
+    """Write x and a sum of stages into y, which may be x."""
+    d = states(constant, x)
+    k0 = k[0]
+    k3 = k[3]
+    k4 = k[4]
+    k5 = k[5]
+    k6 = k[6]
+    k7 = k[7]
+    k8 = k[8]
+    for i in range(d):
+        y[i] = x[i] + (h * 0.47766253643826434) * k0[i] - (h * 2.4881146199716677) * k3[i] - (h * 0.590290826836843) * k4[i] + (h * 21.230051448181193) * k5[i] + (h * 15.279233632882423) * k6[i] - (h * 33.28821096898486) * k7[i] - (h * 0.020331201708508627) * k8[i]
+
+
+@njit(cache=True, error_model="numpy", fastmath=ORDERED, _nrt=False, forceinline=True)
+def dop853_step_9(h, x, k, y, constant):
+    """Write x and a sum of stages into y, which may be x."""
+    d = states(constant, x)
+    k0 = k[0]
+    k3 = k[3]
+    k4 = k[4]
+    k5 = k[5]
+    k6 = k[6]
+    k7 = k[7]
+    k8 = k[8]
+    k9 = k[9]
+    for i in range(d):
+        y[i] = x[i] - (h * 0.9371424300859873) * k0[i] + (h * 5.186372428844064) * k3[i] + (h * 1.0914373489967295) * k4[i] - (h * 8.149787010746927) * k5[i] - (h * 18.52006565999696) * k6[i] + (h * 22.739487099350505) * k7[i] + (h * 2.4936055526796523) * k8[i] - (h * 3.0467644718982196) * k9[i]
+
+
+@njit(cache=True, error_model="numpy", fastmath=ORDERED, _nrt=False, forceinline=True)
+def dop853_step_10(h, x, k, y, constant):
+    """Write x and a sum of stages into y, which may be x."""
+    d = states(constant, x)
+    k0 = k[0]
     k3 = k[3]
     k4 = k[4]
     k5 = k[5]
@@ -48,45 +197,55 @@ def dop853_step(kernel, t, h, x, x_new, k, y, work, constant):
     k8 = k[8]
     k9 = k[9]
     k10 = k[10]
-    k11 = k[11]
-    for i in range(d):
-        y[i] = x[i] + (h * 0.05260015195876773) * k0[i]
-    rhs(kernel, t + 0.05260015195876773 * h, y, k1, work)
-    for i in range(d):
-        y[i] = x[i] + (h * 0.0197250569845379) * k0[i] + (h * 0.0591751709536137) * k1[i]
-    rhs(kernel, t + 0.0789002279381516 * h, y, k2, work)
-    for i in range(d):
-        y[i] = x[i] + (h * 0.02958758547680685) * k0[i] + (h * 0.08876275643042054) * k2[i]
-    rhs(kernel, t + 0.1183503419072274 * h, y, k3, work)
-    for i in range(d):
-        y[i] = x[i] + (h * 0.2413651341592667) * k0[i] - (h * 0.8845494793282861) * k2[i] + (h * 0.924834003261792) * k3[i]
-    rhs(kernel, t + 0.2816496580927726 * h, y, k4, work)
-    for i in range(d):
-        y[i] = x[i] + (h * 0.037037037037037035) * k0[i] + (h * 0.17082860872947386) * k3[i] + (h * 0.12546768756682242) * k4[i]
-    rhs(kernel, t + 0.3333333333333333 * h, y, k5, work)
-    for i in range(d):
-        y[i] = x[i] + (h * 0.037109375) * k0[i] + (h * 0.17025221101954405) * k3[i] + (h * 0.06021653898045596) * k4[i] - (h * 0.017578125) * k5[i]
-    rhs(kernel, t + 0.25 * h, y, k6, work)
-    for i in range(d):
-        y[i] = x[i] + (h * 0.03709200011850479) * k0[i] + (h * 0.17038392571223998) * k3[i] + (h * 0.10726203044637328) * k4[i] - (h * 0.015319437748624402) * k5[i] + (h * 0.008273789163814023) * k6[i]
-    rhs(kernel, t + 0.3076923076923077 * h, y, k7, work)
-    for i in range(d):
-        y[i] = x[i] + (h * 0.6241109587160757) * k0[i] - (h * 3.3608926294469414) * k3[i] - (h * 0.868219346841726) * k4[i] + (h * 27.59209969944671) * k5[i] + (h * 20.154067550477894) * k6[i] - (h * 43.48988418106996) * k7[i]
-    rhs(kernel, t + 0.6512820512820513 * h, y, k8, work)
-    for i in range(d):
-        y[i] = x[i] + (h * 0.47766253643826434) * k0[i] - (h * 2.4881146199716677) * k3[i] - (h * 0.590290826836843) * k4[i] + (h * 21.230051448181193) * k5[i] + (h * 15.279233632882423) * k6[i] - (h * 33.28821096898486) * k7[i] - (h * 0.020331201708508627) * k8[i]
-    rhs(kernel, t + 0.6 * h, y, k9, work)
-    for i in range(d):
-        y[i] = x[i] - (h * 0.9371424300859873) * k0[i] + (h * 5.186372428844064) * k3[i] + (h * 1.0914373489967295) * k4[i] - (h * 8.149787010746927) * k5[i] - (h * 18.52006565999696) * k6[i] + (h * 22.739487099350505) * k7[i] + (h * 2.4936055526796523) * k8[i] - (h * 3.0467644718982196) * k9[i]
-    rhs(kernel, t + 0.8571428571428571 * h, y, k10, work)
     for i in range(d):
         y[i] = x[i] + (h * 2.273310147516538) * k0[i] - (h * 10.53449546673725) * k3[i] - (h * 2.0008720582248625) * k4[i] - (h * 17.9589318631188) * k5[i] + (h * 27.94888452941996) * k6[i] - (h * 2.8589982771350235) * k7[i] - (h * 8.87285693353063) * k8[i] + (h * 12.360567175794303) * k9[i] + (h * 0.6433927460157636) * k10[i]
-    rhs(kernel, t + 1.0 * h, y, k11, work)
+
+
+@njit(cache=True, error_model="numpy", fastmath=ORDERED, _nrt=False, forceinline=True)
+def dop853_step_11(h, x, k, y, constant):
+    """Write x and a sum of stages into y, which may be x."""
+    d = states(constant, x)
+    k0 = k[0]
+    k5 = k[5]
+    k6 = k[6]
+    k7 = k[7]
+    k8 = k[8]
+    k9 = k[9]
+    k10 = k[10]
+    k11 = k[11]
     for i in range(d):
-        x_new[i] = x[i] + (h * 0.054293734116568765) * k0[i] + (h * 4.450312892752409) * k5[i] + (h * 1.8915178993145003) * k6[i] - (h * 5.801203960010585) * k7[i] + (h * 0.3111643669578199) * k8[i] - (h * 0.1521609496625161) * k9[i] + (h * 0.20136540080403034) * k10[i] + (h * 0.04471061572777259) * k11[i]
+        y[i] = x[i] + (h * 0.054293734116568765) * k0[i] + (h * 4.450312892752409) * k5[i] + (h * 1.8915178993145003) * k6[i] - (h * 5.801203960010585) * k7[i] + (h * 0.3111643669578199) * k8[i] - (h * 0.1521609496625161) * k9[i] + (h * 0.20136540080403034) * k10[i] + (h * 0.04471061572777259) * k11[i]
 
 
-@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)
+@njit(error_model="numpy", fastmath=ORDERED, _nrt=False, forceinline=True)
+def dop853_step(kernel, t, h, x, x_new, k, y, work, constant):
+    """Write the state at t + h into x_new, which may be x."""
+    dop853_step_0(h, x, k, y, constant)
+    rhs(kernel, t + 0.05260015195876773 * h, y, k[1], work)
+    dop853_step_1(h, x, k, y, constant)
+    rhs(kernel, t + 0.0789002279381516 * h, y, k[2], work)
+    dop853_step_2(h, x, k, y, constant)
+    rhs(kernel, t + 0.1183503419072274 * h, y, k[3], work)
+    dop853_step_3(h, x, k, y, constant)
+    rhs(kernel, t + 0.2816496580927726 * h, y, k[4], work)
+    dop853_step_4(h, x, k, y, constant)
+    rhs(kernel, t + 0.3333333333333333 * h, y, k[5], work)
+    dop853_step_5(h, x, k, y, constant)
+    rhs(kernel, t + 0.25 * h, y, k[6], work)
+    dop853_step_6(h, x, k, y, constant)
+    rhs(kernel, t + 0.3076923076923077 * h, y, k[7], work)
+    dop853_step_7(h, x, k, y, constant)
+    rhs(kernel, t + 0.6512820512820513 * h, y, k[8], work)
+    dop853_step_8(h, x, k, y, constant)
+    rhs(kernel, t + 0.6 * h, y, k[9], work)
+    dop853_step_9(h, x, k, y, constant)
+    rhs(kernel, t + 0.8571428571428571 * h, y, k[10], work)
+    dop853_step_10(h, x, k, y, constant)
+    rhs(kernel, t + 1.0 * h, y, k[11], work)
+    dop853_step_11(h, x, k, x_new, constant)
+
+
+@njit(cache=True, error_model="numpy", fastmath=ORDERED, _nrt=False)
 def dop853_error(x, x_new, k, rtol, atol, constant):
     """Sums of squares of the two error estimates over h, scaled."""
     d = states(constant, x)
@@ -109,9 +268,57 @@ def dop853_error(x, x_new, k, rtol, atol, constant):
     return square_3, square_5
 
 
-@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)
-def dop853_dense(kernel, t, h, x, x_new, dense, k, y, work, constant):
-    """Write the dense output's coefficients (7, d); k[12] holds f at the end of the step."""
+@njit(cache=True, error_model="numpy", fastmath=ORDERED, _nrt=False, forceinline=True)
+def dop853_dense_0(h, x, k, y, constant):
+    """Write x and a sum of stages into y, which may be x."""
+    d = states(constant, x)
+    k0 = k[0]
+    k6 = k[6]
+    k7 = k[7]
+    k8 = k[8]
+    k9 = k[9]
+    k10 = k[10]
+    k11 = k[11]
+    k12 = k[12]
+    for i in range(d):
+        y[i] = x[i] + (h * 0.056167502283047954) * k0[i] + (h * 0.25350021021662483) * k6[i] - (h * 0.2462390374708025) * k7[i] - (h * 0.12419142326381637) * k8[i] + (h * 0.15329179827876568) * k9[i] + (h * 0.00820105229563469) * k10[i] + (h * 0.007567897660545699) * k11[i] - (h * 0.008298) * k12[i]
+
+
+@njit(cache=True, error_model="numpy", fastmath=ORDERED, _nrt=False, forceinline=True)
+def dop853_dense_1(h, x, k, y, constant):
+    """Write x and a sum of stages into y, which may be x."""
+    d = states(constant, x)
+    k0 = k[0]
+    k5 = k[5]
+    k6 = k[6]
+    k7 = k[7]
+    k10 = k[10]
+    k11 = k[11]
+    k12 = k[12]
+    k13 = k[13]
+    for i in range(d):
+        y[i] = x[i] + (h * 0.03183464816350214) * k0[i] + (h * 0.028300909672366776) * k5[i] + (h * 0.053541988307438566) * k6[i] - (h * 0.05492374857139099) * k7[i] - (h * 0.00010834732869724932) * k10[i] + (h * 0.0003825710908356584) * k11[i] - (h * 0.00034046500868740456) * k12[i] + (h * 0.1413124436746325) * k13[i]
+
+
+@njit(cache=True, error_model="numpy", fastmath=ORDERED, _nrt=False, forceinline=True)
+def dop853_dense_2(h, x, k, y, constant):
+    """Write x and a sum of stages into y, which may be x."""
+    d = states(constant, x)
+    k0 = k[0]
+    k5 = k[5]
+    k6 = k[6]
+    k7 = k[7]
+    k8 = k[8]
+    k12 = k[12]
+    k13 = k[13]
+    k14 = k[14]
+    for i in range(d):
+        y[i] = x[i] - (h * 0.42889630158379194) * k0[i] - (h * 4.697621415361164) * k5[i] + (h * 7.683421196062599) * k6[i] + (h * 4.06898981839711) * k7[i] + (h * 0.3567271874552811) * k8[i] - (h * 0.0013990241651590145) * k12[i] + (h * 2.9475147891527724) * k13[i] - (h * 9.15095847217987) * k14[i]
+
+
+@njit(cache=True, error_model="numpy", fastmath=ORDERED, _nrt=False)
+def dop853_dense_coefficients(h, x, x_new, dense, k, constant):
+    """Write the dense output's coefficients (7, d) from all stages."""
     d = states(constant, x)
     k0 = k[0]
     k5 = k[5]
@@ -126,15 +333,6 @@ def dop853_dense(kernel, t, h, x, x_new, dense, k, y, work, constant):
     k14 = k[14]
     k15 = k[15]
     for i in range(d):
-        y[i] = x[i] + (h * 0.056167502283047954) * k0[i] + (h * 0.25350021021662483) * k6[i] - (h * 0.2462390374708025) * k7[i] - (h * 0.12419142326381637) * k8[i] + (h * 0.15329179827876568) * k9[i] + (h * 0.00820105229563469) * k10[i] + (h * 0.007567897660545699) * k11[i] - (h * 0.008298) * k12[i]
-    rhs(kernel, t + 0.1 * h, y, k13, work)
-    for i in range(d):
-        y[i] = x[i] + (h * 0.03183464816350214) * k0[i] + (h * 0.028300909672366776) * k5[i] + (h * 0.053541988307438566) * k6[i] - (h * 0.05492374857139099) * k7[i] - (h * 0.00010834732869724932) * k10[i] + (h * 0.0003825710908356584) * k11[i] - (h * 0.00034046500868740456) * k12[i] + (h * 0.1413124436746325) * k13[i]
-    rhs(kernel, t + 0.2 * h, y, k14, work)
-    for i in range(d):
-        y[i] = x[i] - (h * 0.42889630158379194) * k0[i] - (h * 4.697621415361164) * k5[i] + (h * 7.683421196062599) * k6[i] + (h * 4.06898981839711) * k7[i] + (h * 0.3567271874552811) * k8[i] - (h * 0.0013990241651590145) * k12[i] + (h * 2.9475147891527724) * k13[i] - (h * 9.15095847217987) * k14[i]
-    rhs(kernel, t + 0.7777777777777778 * h, y, k15, work)
-    for i in range(d):
         dense[0, i] = x_new[i] - x[i]
         dense[1, i] = h * k0[i] - dense[0, i]
         dense[2, i] = 2.0 * dense[0, i] - h * (k12[i] + k0[i])
@@ -145,6 +343,18 @@ def dop853_dense(kernel, t, h, x, x_new, dense, k, y, work, constant):
 
 
 @njit(error_model="numpy", fastmath=ORDERED, _nrt=False)
+def dop853_dense(kernel, t, h, x, x_new, dense, k, y, work, constant):
+    """Write the dense output's coefficients (7, d); k[12] holds f at the end of the step."""
+    dop853_dense_0(h, x, k, y, constant)
+    rhs(kernel, t + 0.1 * h, y, k[13], work)
+    dop853_dense_1(h, x, k, y, constant)
+    rhs(kernel, t + 0.2 * h, y, k[14], work)
+    dop853_dense_2(h, x, k, y, constant)
+    rhs(kernel, t + 0.7777777777777778 * h, y, k[15], work)
+    dop853_dense_coefficients(h, x, x_new, dense, k, constant)
+
+
+@njit(cache=True, error_model="numpy", fastmath=ORDERED, _nrt=False)
 def gauss_legendre_4_extrapolate(x, k, constant):
     """Replace the last step's stages by a guess of the next's."""
     d = states(constant, x)
@@ -201,7 +411,7 @@ def gauss_legendre_4_increment(h, x, k, lost, constant):
         lost[i] = (before - x[i]) + total
 
 
-@njit(error_model="numpy", fastmath=ORDERED, _nrt=False)
+@njit(cache=True, error_model="numpy", fastmath=ORDERED, _nrt=False)
 def gauss_legendre_6_extrapolate(x, k, constant):
     """Replace the last step's stages by a guess of the next's."""
     d = states(constant, x)
