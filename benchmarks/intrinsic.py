@@ -66,9 +66,7 @@ def far(found, exact) -> float:
 def main() -> None:
     """Print the table."""
     fine = reduced_order(basis(FINE), "hamiltonian", "compiled")
-    print(
-        "| modes | model | from the fine chain [%] | from the chain of so many modes [%] | operations | s |"
-    )
+    print("| modes | model | from the fine chain [%] | from the chain of so many modes [%] | operations |")
     print("|---|---|---|---|---|")
     for modes in (3, 6, 8, 10):
         own = basis(modes)

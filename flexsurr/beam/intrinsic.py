@@ -16,8 +16,8 @@ less. With v = Σ φ q, ε = Σ ψ s and σ = Σ τ s of linear modes, ψ = B(0)
 (A. Cea and R. Palacios, "A nearly-real time nonlinear aeroelastic simulation architecture based on JAX"). All
 of it turns x = (q, s) without making it longer: ẋ = S(x) x with S skew. So ½ |x|², the energy, stays.
 
-An axis that does not shear has no modes of shear. Their velocities and forces, of second order in a bent axis
-that twists, are what any number of modes here leaves out; in a plane they do no work.
+An axis that does not shear has no modes of shear, so their velocities and forces, of second order in a bent
+axis that twists, are left out whatever the number of modes; in a plane they do no work.
 """
 
 from collections.abc import Sequence

@@ -108,7 +108,7 @@ def test_in_a_plane_it_comes_to_the_full_order_chain_as_elements_get_shorter():
 
 
 def test_in_space_it_strays_with_the_square_of_the_motion():
-    """What shear forces do in a bent and twisted axis is of third order, and its modes have none of it."""
+    """What is left out of the rates is of third order, so in proportion to the motion of second."""
     wing = change(WING, elements=2)
     t = np.linspace(0.0, 0.5, 11)
     far, near = (distance(wing, {0: size, 2: 0.1 * size, 3: 0.1 * size}, t) for size in (1.0, 0.5))
