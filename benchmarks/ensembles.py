@@ -30,11 +30,10 @@ STEPS_S = (0.01, 0.015, 0.02)
 SEEN = np.linspace(0.0, DURATION_S, 501)
 """Times of the tip: a whole number of any of the steps apart."""
 TIGHT = Integrator(method="dop853_fixed", step_s=0.002)
-NETWORK = {"activation": "half_log", "epochs": 400}
+NETWORK = {"activation": "half_log", "epochs": 400, "patience": 60}
 TRIALS = {
     "polynomial H, degree 6": trial_of(architecture="polynomial", degree=6, optimiser="least_squares"),
     "polynomial H, degree 10": trial_of(architecture="polynomial", degree=10, optimiser="least_squares"),
-    "even HNN, 6 neurons": trial_of(architecture="even_hnn", hidden=(6,), **NETWORK),
     "even HNN, 8 neurons": trial_of(architecture="even_hnn", hidden=(8,), **NETWORK),
     "HNN, 16 neurons": trial_of(architecture="hnn", hidden=(16,), **NETWORK),
 }
