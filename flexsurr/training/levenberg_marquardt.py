@@ -9,6 +9,12 @@ What JᵀJ is made of, and how its system is solved, is the objective's affair.
 Where the objective knows how residuals bend along a step, the step bends too, by the same factors: the
 geodesic acceleration of Transtrum & Sethna, *Improvements to the Levenberg-Marquardt algorithm for nonlinear
 least-squares minimization*, arXiv:1201.5885. Networks then take a fraction of the steps.
+
+Where residuals are linear in some of the parameters, as in the weights that read a layer, these are settled
+by linear least squares after every step: variable projection (Golub & Pereyra, SIAM J. Numer. Anal. 10 (1973)
+413), its steps those of all parameters together (Ruhe & Wedin, SIAM Review 22 (1980) 318). So it is with maps
+and the entries of a mass matrix, but not with fields: from noisy rates it makes large weights that cancel
+within the samples, and responses beyond them without bound.
 """
 
 from collections.abc import Callable, Iterator
@@ -29,6 +35,7 @@ LARGEST_DAMPING = 1e12
 SMALLEST_DAMPING = 1e-15
 LARGEST_BEND = 0.75  # twice the acceleration over the step: beyond, a parabola is no better than a line
 BEND_OVER = 0.1  # of the step that residuals are differenced over
+NEARLY_SINGULAR = 1e-12  # added to the diagonal of linear parameters' JᵀJ, relative to it
 
 
 class Equations(Protocol):
@@ -84,6 +91,21 @@ class NormalEquations(NamedTuple):
 def ones_for_zeros(damping: Array) -> Array:
     """The same with ones for zeros: a weight that nothing depends on stays where it is."""
     return np.where(damping > 0.0, damping, 1.0)
+
+
+def settling(gram: Array, gradient: Array) -> Array:
+    """What linear parameters move by: −(their JᵀJ)⁻¹ Jᵀr, (n,) or a column for each output (n, k).
+
+    Nearly the shortest one where they are not determined; zeros where rounding leaves no solution.
+    """
+    damped = gram.copy()
+    damped.flat[:: len(gram) + 1] += ones_for_zeros(NEARLY_SINGULAR * gram.diagonal())
+    try:
+        factor = cho_factor(damped, check_finite=False)
+    except LinAlgError:
+        return np.zeros_like(gradient)
+    moved: Array = -cho_solve(factor, gradient, check_finite=False)
+    return moved
 
 
 def accumulated(rows: Rows, shape: tuple[int, ...], unknowns: int, chunk: int) -> NormalEquations:
@@ -151,6 +173,15 @@ class Bending(Protocol):
         ...
 
 
+@runtime_checkable
+class Separable(Protocol):
+    """A sum of squares of residuals that are linear in some of the parameters."""
+
+    def settled(self, parameters: Array) -> Array:
+        """The same with the linear ones at their least squares, given the others (n,)."""
+        ...
+
+
 class Smooth(SumOfSquares, Protocol):
     """A sum of squares with a gradient of its own, cheaper than JᵀJ."""
 
@@ -172,12 +203,12 @@ class LevenbergMarquardt:
     """One call of `epoch` is one accepted step. Satisfies `Optimiser`."""
 
     def __init__(self, objective: SumOfSquares, parameters: Array) -> None:
-        self.parameters = parameters.copy()
         self.finished = ""
         self._objective = objective
+        self.parameters = parameters.copy()
         self._damping = INITIAL_DAMPING
         self._growth = 2.0
-        self._equations = objective.normal_equations(parameters)
+        self._equations = objective.normal_equations(self.parameters)
         self._largest = self._equations.diagonal
 
     def epoch(self) -> float:
@@ -190,10 +221,11 @@ class LevenbergMarquardt:
                 step = solve(gradient)
                 predicted = float(step @ (damping * step - gradient))
                 step = step + self._acceleration(solve, step)
-                gained = loss - self._objective.loss(self.parameters + step)
+                reached = self._settled(self.parameters + step)
+                gained = loss - self._objective.loss(reached)
                 if gained > 0.0 and predicted > 0.0:
                     gain = min(gained / predicted, 1.0)
-                    self.parameters = self.parameters + step
+                    self.parameters = reached
                     self._damping *= max(1.0 / 3.0, 1.0 - (2.0 * gain - 1.0) ** 3)
                     self._damping = max(self._damping, SMALLEST_DAMPING)
                     self._growth = 2.0
@@ -204,6 +236,9 @@ class LevenbergMarquardt:
             self._growth *= 2.0
         self.finished = "no step lessens the loss"
         return loss
+
+    def _settled(self, parameters: Array) -> Array:
+        return self._objective.settled(parameters) if isinstance(self._objective, Separable) else parameters
 
     def _acceleration(self, solve: Solver, step: Array) -> Array | float:
         """What is added to `step`; nothing where it is unknown, or too large to be trusted."""

@@ -19,7 +19,7 @@ from flexsurr.simulation.rhs import Array
 from flexsurr.surrogates.activations import activation_function
 from flexsurr.surrogates.layers import layer_shapes, views
 from flexsurr.surrogates.mirrored_mass import Images
-from flexsurr.training.levenberg_marquardt import NormalEquations, second_difference
+from flexsurr.training.levenberg_marquardt import NormalEquations, second_difference, settling
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +28,7 @@ class MirroredLayer:
 
     `output_weights` (entries,) are those of the entries. `parameters` are weights (r, h), biases (h,),
     readout (h, entries) and constants (entries,); constants of entries that change their sign stay as they
-    are. Satisfies `SumOfSquares` and `Bending`.
+    are. Satisfies `SumOfSquares`, `Bending` and `Separable`.
     """
 
     x: Array
@@ -79,6 +79,24 @@ class MirroredLayer:
         """The weighted mean squared error."""
         return float(np.mean((self.outputs(parameters) - self.y) ** 2, axis=0) @ self.output_weights)
 
+    def settled(self, parameters: Array) -> Array:
+        """The same with readout and constants at their least squares."""
+        found = parameters.copy()
+        *_, readout, constants = self.weights(found)
+        features, _ = self._features(parameters)
+        errors = self._read(features, readout) + constants - self.y
+        for c, members in self._members:
+            seen = self._seen(features, c)
+            moved = settling(seen.T @ seen, seen.T @ errors[:, members])
+            readout[:, members] += moved[: self.hidden]
+            if c == 0:
+                constants[members] += moved[-1]
+        return found
+
+    def _seen(self, features: Array, c: int) -> Array:
+        """What entries of parity c read: their features, and 1 where they may have a constant."""
+        return features[c] if c else np.hstack([features[c], np.ones((len(self.x), 1))])
+
     def normal_equations(self, parameters: Array) -> NormalEquations:
         """JᵀJ and Jᵀr."""
         *_, readout, constants = self.weights(parameters)
@@ -92,7 +110,7 @@ class MirroredLayer:
         # the readout of neuron k for entry e stands at k · entries + e, constants are the last row
         places = inner + np.arange((h + 1) * entries).reshape(h + 1, entries)
         for c, members in self._members:
-            seen = features[c] if c else np.hstack([features[c], np.ones((m, 1))])
+            seen = self._seen(features, c)
             tilted = (x[:, :, None] * slopes[parities ^ c].transpose(1, 0, 2)).reshape(m, inner)
             of_inner, between, outer = tilted.T @ tilted, tilted.T @ seen, seen.T @ seen
             own, importance = readout[:, members], self.output_weights[members] / m

@@ -41,6 +41,7 @@ from flexsurr.training.levenberg_marquardt import (
     Solver,
     ones_for_zeros,
     second_difference,
+    settling,
 )
 from flexsurr.training.losses import output_weights
 
@@ -167,6 +168,15 @@ class OneHiddenLayer:
     def loss(self, parameters: Array) -> float:
         """The nmse over all samples; not finite where a weight or an output is not."""
         return float(np.mean((self.outputs(parameters) - self.y) ** 2, axis=0) @ self.output_weights)
+
+    def settled(self, parameters: Array) -> Array:
+        """The same with V and c, weights of their own, at their least squares: each output by itself."""
+        inner, biases, readout, constants = self.readout.weights(parameters)
+        values = self.readout.value(self.x @ inner + biases)
+        if constants is not None:
+            values, readout = np.hstack([values, np.ones((len(values), 1))]), np.vstack([readout, constants])
+        moved = settling(values.T @ values, values.T @ (values @ readout - self.y)).ravel()
+        return np.concatenate([parameters[: -moved.size], parameters[-moved.size :] + moved])
 
     def gradient(self, parameters: Array, gradient: Array) -> float:
         """The loss, its gradient written into `gradient` (parameters,)."""

@@ -80,7 +80,7 @@ def test_residuals_bend_as_those_of_all_neurons_do(seed, planes):
 
 @pytest.mark.parametrize("planes", PLANES)
 def test_a_network_of_the_same_size_is_found(planes):
-    objective, start = problem(2, planes, samples=200)
+    objective, start = problem(6, planes, samples=200)
     start[-packed_size(3) :][objective.images.of_entries != 0] = 0.0
     truth = np.random.default_rng(3).standard_normal(start.size)
     truth[-packed_size(3) :][objective.images.of_entries != 0] = 0.0

@@ -100,7 +100,7 @@ def test_the_loss_is_the_nmse_averaged_over_outputs():
 
 
 def test_levenberg_marquardt_finds_a_network_of_the_same_size():
-    objective, start = problem(2, 200, 3, 5, 2)
+    objective, start = problem(4, 200, 3, 5, 2)
     truth = np.random.default_rng(3).standard_normal(start.size)
     reachable = OneHiddenLayer.of_map(objective.x, objective.outputs(truth), 5, "tanh")
     optimiser = LevenbergMarquardt(reachable, start)
