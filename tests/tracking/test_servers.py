@@ -37,6 +37,12 @@ EPOCHS = 700
 USER = "postgres"  # whom Debian's package makes; PostgreSQL refuses to run as root
 
 
+@pytest.fixture(autouse=True)
+def patient(monkeypatch):
+    """A server that is away refuses at once; one that is there may take its time on a busy machine."""
+    monkeypatch.setenv("MLFLOW_HTTP_REQUEST_TIMEOUT", str(int(PATIENCE_S)))
+
+
 def programs() -> Path:
     """The folder of PostgreSQL's programs, which Debian keeps off the PATH."""
     found = shutil.which("initdb")
