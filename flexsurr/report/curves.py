@@ -84,9 +84,9 @@ def follow_reference(ax: Axes, values: pd.Series) -> None:
 
 
 def shade(ax: Axes, load_end_s: float) -> None:
-    """The interval in which the load acts."""
+    """The interval in which the load acts, as far as there are curves: a load may have no end."""
     if load_end_s > 0.0:
-        ax.axvspan(0.0, load_end_s, color=LOADED, linewidth=0, zorder=0)
+        ax.axvspan(0.0, min(load_end_s, ax.dataLim.x1), color=LOADED, linewidth=0, zorder=0)
 
 
 def legend(figure: Figure, axes: Iterable[Axes], shaded: bool) -> None:

@@ -83,7 +83,7 @@ def _histories(
     grid = figure.subplots(len(quantities), len(variants), sharex=True, sharey="row", squeeze=False)
     for column, variant in zip(grid.T, variants, strict=True):
         shown = the_papers(response[response["variant"] == variant], architectures)
-        load_end_s = min(float(shown["load_end_s"].max()), float(shown["t_s"].max()))
+        load_end_s = float(shown["load_end_s"].max())
         for ax, quantity in zip(column, quantities, strict=True):
             papers_curves(ax, shown, quantity)
             shade(ax, load_end_s)
@@ -196,8 +196,9 @@ def _windows(structure: Structure, shown: pd.DataFrame) -> list[tuple[float, flo
     end_s, load_end_s = float(shown["t_s"].max()), float(shown["load_end_s"].max())
     if structure.dissipates:
         return [(0.0, end_s, "tip")]
-    first_s = max(0.0, min(load_end_s - 0.55 * WINDOW_S, end_s - WINDOW_S))
-    first = "end of the load" if load_end_s > 0.0 else "first oscillations"
+    ends = 0.0 < load_end_s < end_s
+    first_s = max(0.0, min(load_end_s - 0.55 * WINDOW_S, end_s - WINDOW_S)) if ends else 0.0
+    first = "end of the load" if ends else "first oscillations"
     return [
         (first_s, min(first_s + WINDOW_S, end_s), first),
         (max(0.0, end_s - WINDOW_S), end_s, "last oscillations"),

@@ -270,6 +270,15 @@ def test_where_the_load_acts_is_shaded(name, request):
     assert all(ax.patches for ax in figure.axes)
 
 
+def test_a_load_without_an_end_is_shaded_as_far_as_there_are_curves(structure, sustained):
+    endless = sustained.assign(load_end_s=np.inf)
+    for ax in DRAW["figure_12"](endless).axes:
+        (shaded,) = ax.patches
+        assert shaded.get_x() + shaded.get_width() == pytest.approx(ax.dataLim.x1)
+    every = DRAW["forced_response_of_every_model"](structure, endless)
+    assert every.axes[0].get_title(loc="left").startswith("first oscillations")
+
+
 def test_a_model_that_leaves_does_not_set_the_scale(request):
     response = request.getfixturevalue("free")
     response.loc[response["model"] == "hnn", ["tip_z_m", "tip_twist_rad"]] *= 1e3

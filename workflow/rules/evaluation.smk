@@ -57,14 +57,6 @@ rule learn_load:
         " > {log:q} 2>&1"
 
 
-def learned_loads(wildcards):
-    """The files of the study's load as it has been learned."""
-    learned = plan.studies[wildcards.study].learns_load
-    return [
-        rules.learn_load.output[form] for form in ("polynomial", "network") if learned
-    ]
-
-
 rule rehearse:
     # It compiles what is timed, beside other jobs: a job that measures time keeps all cores waiting.
     input:

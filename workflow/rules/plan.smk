@@ -100,3 +100,11 @@ def code(command):
 def caption_file(name):
     """The file that says what to see in the figure or table `name`."""
     return os.path.relpath(f"{workflow.basedir}/workflow/report/{name}.rst")
+
+
+def learned_loads(wildcards):
+    """The files of the study's load as it has been learned."""
+    learned = plan.studies[wildcards.study].learns_load
+    return [
+        rules.learn_load.output[form] for form in ("polynomial", "network") if learned
+    ]
