@@ -86,7 +86,8 @@ def follow_reference(ax: Axes, values: pd.Series) -> None:
 def shade(ax: Axes, load_end_s: float) -> None:
     """The interval in which the load acts, as far as there are curves: a load may have no end."""
     if load_end_s > 0.0:
-        ax.axvspan(0.0, min(load_end_s, ax.dataLim.x1), color=LOADED, linewidth=0, zorder=0)
+        end_s = ax.dataLim.x1 if ax.lines else ax.get_xlim()[1]
+        ax.axvspan(0.0, min(load_end_s, end_s), color=LOADED, linewidth=0, zorder=0)
 
 
 def legend(figure: Figure, axes: Iterable[Axes], shaded: bool) -> None:
