@@ -35,7 +35,6 @@ from flexsurr.surrogates.potential import Potential
 from flexsurr.training.configuration_samples import ConfigurationSamples
 from flexsurr.training.dataset import SampleSource, for_each_piece
 from flexsurr.training.known_mass import (
-    AS_GOOD,
     CHUNK,
     SeparateEntries,
     fit_sparse,
@@ -44,7 +43,7 @@ from flexsurr.training.known_mass import (
     with_constant,
 )
 from flexsurr.training.least_squares import Triangle
-from flexsurr.training.losses import FieldErrors
+from flexsurr.training.losses import FieldErrors, as_good
 
 LARGEST_TOGETHER = 1200  # unknowns of all entries of M that are fitted at once
 POTENTIAL_DEGREE = 10
@@ -224,7 +223,7 @@ def fit_port_hamiltonian(
 
     By inverse dynamics, or from the mass matrices themselves where the samples have them; so many entries
     that they are too much for one problem each by itself. Odd powers are
-    kept where they make validation better by a factor of `AS_GOOD`. Samples are read twice,
+    kept where they make validation better, by `as_good`. Samples are read twice,
     block by block. Raises NotPositiveDefinite if its mass matrix is none at a validation state, ValueError
     where the samples don't vary or are not finite.
     """
@@ -246,7 +245,7 @@ def fit_port_hamiltonian(
     for_each_piece(source.validation_blocks(), even.add, full.add)
     if even.indefinite_at is not None and full.indefinite_at is not None:
         raise NotPositiveDefinite(even.surrogate, even.indefinite_at)
-    return even.surrogate if even.loss() <= AS_GOOD * full.loss() else full.surrogate
+    return even.surrogate if as_good(even.loss(), full.loss()) else full.surrogate
 
 
 def _sparse(

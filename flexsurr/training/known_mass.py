@@ -15,9 +15,9 @@ from flexsurr.surrogates.packed import pack, packed_size, rows_and_columns, semi
 from flexsurr.surrogates.potential import Potential
 from flexsurr.training.configuration_samples import ConfigurationSamples
 from flexsurr.training.least_squares import Triangle
+from flexsurr.training.losses import AS_GOOD
 
 CHUNK = 1 << 22  # elements of the matrix that exist at a time: 32 MB
-AS_GOOD = 2.0  # a smaller set of monomials is kept if it validates within this factor of the larger
 HELD_OUT = 0.2  # of the samples, by which monomials are chosen
 CLOSE = 0.03  # of the number of monomials: how near to the fewest the search ends
 

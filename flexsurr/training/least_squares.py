@@ -23,7 +23,7 @@ from flexsurr.surrogates.monomials import (
 )
 from flexsurr.surrogates.surrogate import symplectic
 from flexsurr.training.dataset import SampleSource, for_each_piece
-from flexsurr.training.losses import FieldErrors, weights_of_variance
+from flexsurr.training.losses import FieldErrors, as_good, weights_of_variance
 
 
 class Triangle:
@@ -62,7 +62,6 @@ class Triangle:
 
 
 CHUNK = 1 << 21  # elements of the matrix that exist at a time: 16 MB
-AS_GOOD = 2.0  # losses within this factor of the least count as equal
 
 
 def fit_polynomial(source: SampleSource, degree: int) -> PolynomialHamiltonian:
@@ -83,7 +82,7 @@ def fit_polynomial(source: SampleSource, degree: int) -> PolynomialHamiltonian:
         (
             polynomial
             for loss, polynomial in zip(losses, candidates, strict=True)
-            if loss <= AS_GOOD * min(losses)
+            if as_good(loss, min(losses))
         ),
         key=lambda polynomial: polynomial.parameter_count,
     )

@@ -11,7 +11,14 @@ from flexsurr.storage.scales import Moments
 from flexsurr.surrogates import Surrogate
 from flexsurr.training.dataset import Block, for_each_piece
 
+AS_GOOD = 2.0  # losses within this factor of the least count as equal
+EXACT = 1e-28  # an nmse of less is rounding
 _ROUNDING = 1e-12  # an output that varies by less, beside the largest of all, is constant
+
+
+def as_good(loss: float, least: float) -> bool:
+    """Whether a model of this nmse counts as good as one of the `least`."""
+    return loss <= max(AS_GOOD * least, EXACT)
 
 
 def output_weights(target: Array) -> Array:

@@ -31,4 +31,4 @@ def test_everything_is_planned_without_a_number_of_cores(make_project):
         timeout=300,
     )
     assert done.returncode == 0, done.stderr
-    assert "timing the forced response of cantilever" in done.stdout + done.stderr
+    assert "timing responses of cantilever" in done.stdout + done.stderr
