@@ -6,6 +6,7 @@ a line that says so.
 """
 
 import argparse
+import io
 import os
 import shutil
 import signal
@@ -22,6 +23,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mlflow import MlflowClient
+from PIL import Image
 from selenium import webdriver
 from selenium.webdriver.chrome.options import Options
 from selenium.webdriver.chrome.service import Service
@@ -273,7 +275,7 @@ for (const key of Object.keys(localStorage).filter(key => key.endsWith('-ReactCo
 localStorage['mlflow.assistant.panelOpen_v1'] = 'false';
 """  # MLflow keeps them in the browser
 
-OF_REPORT = {"report_opening.png": (report_opening, 900), "report_table.png": (report_table, 620)}
+OF_REPORT = {"report_opening.png": (report_opening, 1240), "report_table.png": (report_table, 620)}
 OF_TRACKING = {
     "tracking_sweep.png": (tracking_sweep, 560),
     "tracking_losses.png": (tracking_losses, 560),
@@ -291,12 +293,21 @@ def _wait_for_images(browser: webdriver.Chrome) -> None:
     WebDriverWait(browser, PATIENCE_S).until(lambda driver: driver.execute_script(drawn), "no picture")
 
 
+def _in_few_colours(figure: Path) -> bytes:
+    """A figure as it is, in a third of its bytes."""
+    content = io.BytesIO()
+    Image.open(figure).convert("RGB").quantize(256, dither=Image.Dither.NONE).save(
+        content, "png", optimize=True
+    )
+    return content.getvalue()
+
+
 def pictures(results: Path, images: Path) -> None:
     """Make what `results` hold of the pictures in the folder `images`, and say of each what became of it."""
     for name, figure in FIGURES.items():
         path = results / "figures" / figure
         if path.exists():
-            _write(images / name, path.read_bytes())
+            _write(images / name, _in_few_colours(path) if path.suffix == ".png" else path.read_bytes())
         else:
             print(f"{name}: left as it is; there is no {path}")
     report, database = results / "report.html", results / "mlflow" / "mlflow.db"

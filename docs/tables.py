@@ -20,7 +20,7 @@ from flexsurr.report.style import label
 from flexsurr.storage import replacing
 
 REPOSITORY = Path(__file__).parents[1]
-DOCUMENTS = ("README.md", "docs/measurements.md", "docs/crossover.md", "docs/speed.md")
+DOCUMENTS = ("README.md", *(f"docs/{name}.md" for name in ("measurements", "crossover", "flight", "speed")))
 MARKED = re.compile(r"(<!-- table: (?P<name>[^>]+?) -->\n).*?(\n<!-- end of table -->)", re.DOTALL)
 
 IMPLEMENTATIONS = ("described", "numpy", "compiled", "torch")
@@ -28,6 +28,16 @@ INTEGRATORS = {
     "scipy_radau": "SciPy Radau",
     "dop853_fixed": "order 8, fixed step",
     "radau_iia_5": "Radau IIA",
+}
+AERODYNAMICS = {
+    "vlm_rebuild": "lattice rebuilt at every call",
+    "vlm_frozen": "frozen, three Mach numbers at a time",
+    "vlm_frozen_one_mach": "frozen at one Mach number",
+    "quadratic": "quadratic form",
+    "network_torch": "**network before export**: in torch, stepped from Python",
+    "network": "**network after export**: compiled",
+    "network_second_order": "second-order inputs",
+    "network_second_order_linear_modes": "second-order inputs, linearised lattice",
 }
 DATASETS = {"default": "the 50", "many": "many", "configurations": "no simulation"}
 
@@ -48,9 +58,9 @@ def rounded(value: float, digits: int = 2) -> str:
     return f"{value:.{digits - 1}e}".replace("e-0", "e-")
 
 
-def percent(value: float) -> str:
+def percent(value: float, digits: int = 2) -> str:
     """A part of something."""
-    return f"{rounded(value)} %" if math.isfinite(value) else ""
+    return f"{rounded(value, digits)} %" if math.isfinite(value) else ""
 
 
 def cost(results: Path, study: str, variant: str, responses: Sequence[str]) -> str:
@@ -88,7 +98,8 @@ def cost(results: Path, study: str, variant: str, responses: Sequence[str]) -> s
 def trials(results: Path, study: str, variant: str) -> str:
     """architectures.csv: what every architecture reached, and what it took."""
     table = pd.read_csv(results / f"tables/{study}/architectures.csv")
-    processor = pd.read_csv(results / f"tables/{study}/training.csv").set_index("run_id")["processor_s"]
+    trained = pd.read_csv(results / f"tables/{study}/training.csv")
+    table = table.merge(trained[["variant", "run_id", "processor_s", "terms"]], on=["variant", "run_id"])
     table = table[(table["variant"] == variant) & (table["status"] == "finished")]
     order = ["architecture", "mass_matrix", "hidden", "degree", "activation", "dataset"]
     rows = [
@@ -98,7 +109,7 @@ def trials(results: Path, study: str, variant: str) -> str:
             DATASETS.get(row.dataset, row.dataset),
             str(row.optimiser).replace("_", " "),
             f"{row.parameters:.0f}",
-            rounded(processor[row.run_id]),
+            rounded(row.processor_s),
             rounded(row.held_out_nmse),
             _both(row.long_response_error_percent_median, row.long_response_error_percent_worst),
         )
@@ -112,7 +123,8 @@ def _size(row: Any) -> str:
     """Degree, or neurons and activation, and what else the name of a trial would say."""
     degree = f"degree {row.degree:.0f}" if pd.notna(row.degree) else ""
     hidden = str(row.hidden).removesuffix(".0") if pd.notna(row.hidden) else ""
-    named = (row.activation, row.mass_matrix, row.scaling if row.scaling == "per_feature" else None)
+    unusual = [name for name in (row.scaling, row.terms) if name in ("per_feature", "sparse")]
+    named = (row.activation, row.mass_matrix, *unusual)
     return " ".join(filter(None, [degree, hidden, *(str(n) for n in named if pd.notna(n))]))
 
 
@@ -140,6 +152,26 @@ def crossover(results: Path) -> str:
             cells.append(f"{part:.0f} % ({name}; {percent(error)})")
         rows.append((str(modes), f"{wall_s * 1e3:.0f} ms", *cells))
     return markdown(("modes", "reduced model, 30 s", *FAMILIES), rows)
+
+
+def flights(results: Path) -> str:
+    """airliner_cost.csv: what a flight takes with each model of the aerodynamics."""
+    table = pd.read_csv(results / "tables/airliner_cost.csv")
+    of_rebuilt = table["relative_to_vlm_rebuild_percent"]
+    rows = [
+        (
+            AERODYNAMICS.get(row.model, row.model.replace("_", " ")),
+            rounded(row.wall_s_mean),
+            f"{rounded(of_rebuilt[row.Index], 3)} ± {percent(row.relative_to_vlm_rebuild_std_percent, 1)}",
+            percent(row.relative_to_vlm_frozen_percent),
+            percent(row.relative_to_vlm_frozen_one_mach_percent),
+            percent(row.worst_error_percent),
+            percent(row.median_error_percent),
+        )
+        for row in table.sort_values("wall_s_mean", ascending=False).itertuples()
+    ]
+    head = ("", "s", "of the lattice rebuilt", "of the frozen one", "of one frozen at a Mach number")
+    return markdown((*head, "worst error of all flights", "median flight's worst"), rows)
 
 
 def benchmarks(results: Path) -> str:
@@ -182,6 +214,7 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "trials of the cantilever": lambda results: trials(results, "cantilever", "hamiltonian"),
     "trials of the wing": lambda results: trials(results, "wing", "hamiltonian"),
     "trials of the wing, as printed": lambda results: trials(results, "wing", "as_printed"),
+    "cost of flights": flights,
     "crossover": crossover,
     "benchmarks": benchmarks,
 }

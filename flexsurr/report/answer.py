@@ -144,8 +144,8 @@ def name_of(model: str) -> str:
 
 
 def times(ratio: float) -> str:
-    """How many times as fast, in two digits or more."""
-    return f"{ratio:.2g}" if ratio < 10.0 else f"{ratio:,.0f}"
+    """How many times as fast, in two digits, or three from ten on."""
+    return f"{ratio:.2g}" if ratio < 10.0 else f"{float(f'{ratio:.3g}'):,.0f}"
 
 
 def _setup(setups: pd.DataFrame) -> "pd.Series[Any]":
