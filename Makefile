@@ -17,7 +17,7 @@ help:
 	@echo "make install      the environment alone, in .venv"
 	@echo "make reproduce    the whole default study, results/report.html   (CORES=2)"
 	@echo "make reproduce-full  every baseline timed on every simulation: hours, results-full/report.html"
-	@echo "make crossover    where a network pays: results/tables/crossover.csv and its figure, a quarter of an hour"
+	@echo "make crossover    where a network pays: results/tables/crossover.csv and its figure, ten minutes"
 	@echo "make report       results/report.html anew, of what is there"
 	@echo "make ui           the page on which runs are compared, on this machine only   (PORT=5000)"
 	@echo "make benchmark    speed, as ratios, in results/tables/benchmarks.csv"
