@@ -10,11 +10,11 @@ import time
 from pathlib import Path
 
 from cantilever import cantilever_dataset
-from flexsurr.config.feature_limits import load_feature_limits
 
 from flexsurr.aerodynamics.features import COEFFICIENT_UNITS, COEFFICIENTS, FEATURE_UNITS, FEATURES
 from flexsurr.aerodynamics.sampling import draw_features, feature_intervals
 from flexsurr.aerodynamics.vortex_lattice import rebuilt
+from flexsurr.config.aerodynamics import load_feature_limits
 from flexsurr.config.aircraft import load_aircraft
 from flexsurr.config.trial import trial_of
 from flexsurr.flight.airliner import flexible_airframe

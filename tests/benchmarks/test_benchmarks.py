@@ -1,6 +1,8 @@
-"""How benchmarks time, and the table of all that they timed."""
+"""How benchmarks time, the table of all that they timed, and that what they take from flexsurr is there."""
 
+import ast
 import csv
+import importlib
 import runpy
 import sys
 import time
@@ -83,3 +85,14 @@ def test_one_sitting_runs_every_benchmark_of_speed(monkeypatch):
     }
     assert timed - {"run"} <= set(listed)
     assert all((BENCHMARKS / f"{name}.py").exists() for name in listed)
+
+
+@pytest.mark.parametrize("script", sorted(BENCHMARKS.glob("*.py")), ids=lambda path: path.stem)
+def test_what_a_benchmark_takes_from_flexsurr_is_there(script):
+    """No test runs them all: what is renamed shows here."""
+    for node in ast.walk(ast.parse(script.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("flexsurr"):
+            module = importlib.import_module(node.module)
+            for name in node.names:
+                if not hasattr(module, name.name):
+                    importlib.import_module(f"{node.module}.{name.name}")
