@@ -99,7 +99,8 @@ def of_structure(name: str, elements: int) -> None:
             simulate(model, t, start, integrator)
 
     runs = {label: lambda model=model: simulated(model) for label, model in models.items()}
-    timings = compare(f"30 s of the {name}, N = {elements}", runs, REPEATS, counts=IN_A_TURN)
+    work, parts = f"30 s of the {name}, N = {elements}", {k: error / 100.0 for k, error in errors.items()}
+    timings = compare(work, runs, REPEATS, counts=IN_A_TURN, errors=parts)
     costs = {label: operations(model, start) for label, model in models.items()}
     marks = chosen(name, errors, costs, study.selection.error_at_most_percent)
     print(f"\n{name}, N = {elements}, {integrator.label}")

@@ -8,7 +8,7 @@ import os
 import statistics
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import astuple, dataclass, fields
 from pathlib import Path
 
@@ -37,17 +37,24 @@ class Timing:
 
 @dataclass(frozen=True)
 class Row:
-    """One line of results/tables/benchmarks.csv, but for the machine."""
+    """One line of results/tables/benchmarks.csv, but for the machine: `peer` was timed in turns with `ours`.
 
-    benchmark: str
-    what: str
-    case: str
-    against: str
+    `ours_s` and `peer_s` are medians, `ratio` is the median of those within a turn. Errors stand where the
+    benchmark knows them, and are relative to a peak.
+    """
+
+    subject: str  # the benchmark
+    work: str
+    ours: str
+    ours_s: float
+    peer: str
+    peer_s: float
     ratio: float
     ratio_spread: float
-    median_s: float
-    spread_s: float
-    lowest_s: float
+    error_ours: float | None
+    error_peer: float | None
+    peer_spread_s: float
+    peer_lowest_s: float
     repeats: int
 
 
@@ -67,11 +74,12 @@ def compare(
     repeats: int = 20,
     warmup: int = 2,
     counts: dict[str, int] | int = 1,
+    errors: Mapping[str, float] | None = None,
 ) -> dict[str, Timing]:
     """Time several calls in turns, each against the first.
 
-    A call that does its work `counts` times over is reported by one of them. ValueError with fewer than two
-    repeats, which have no spread.
+    A call that does its work `counts` times over is reported by one of them. `errors` of the calls, as parts
+    of a peak, are kept beside their times. ValueError with fewer than two repeats, which have no spread.
     """
     if repeats < 2:
         raise ValueError("a spread needs at least two repeats")
@@ -85,8 +93,7 @@ def compare(
             seconds[name].append(_seconds(call) / count)
     first = next(iter(calls))
     timings = {name: _timing(values, seconds[first]) for name, values in seconds.items()}
-    for name, timing in timings.items():
-        _note(what, name, first, timing)
+    _note(what, first, timings, errors or {})
     return timings
 
 
@@ -111,21 +118,27 @@ def _timing(seconds: list[float], first: list[float]) -> Timing:
     )
 
 
-def _note(what: str, case: str, against: str, timing: Timing) -> None:
+def _note(work: str, ours: str, timings: dict[str, Timing], errors: Mapping[str, float]) -> None:
     path = os.environ.get(ROWS)
     if not path:
         return
-    row = Row(
-        benchmark=Path(sys.argv[0]).stem,
-        what=what,
-        case=case,
-        against=against,
-        ratio=timing.ratio,
-        ratio_spread=timing.ratio_spread,
-        median_s=timing.median_s,
-        spread_s=timing.spread_s,
-        lowest_s=timing.lowest_s,
-        repeats=timing.repeats,
-    )
+    rows = [
+        Row(
+            subject=Path(sys.argv[0]).stem,
+            work=work,
+            ours=ours,
+            ours_s=timings[ours].median_s,
+            peer=peer,
+            peer_s=timing.median_s,
+            ratio=timing.ratio,
+            ratio_spread=timing.ratio_spread,
+            error_ours=errors.get(ours),
+            error_peer=errors.get(peer),
+            peer_spread_s=timing.spread_s,
+            peer_lowest_s=timing.lowest_s,
+            repeats=timing.repeats,
+        )
+        for peer, timing in timings.items()
+    ]
     with open(path, "a", newline="", encoding="utf-8") as file:
-        csv.writer(file).writerow(astuple(row))
+        csv.writer(file).writerows(map(astuple, rows))

@@ -39,6 +39,8 @@ AERODYNAMICS = {
     "network_second_order": "second-order inputs",
     "network_second_order_linear_modes": "second-order inputs, linearised lattice",
 }
+OF_SPEED = ("integrators", "chosen", "ensembles", "aerodynamics", "wing_surrogates")
+"""The benchmarks that docs/speed.md shows, beside those of peers; the file has every one."""
 DATASETS = {"default": "the 50", "many": "many", "configurations": "no simulation"}
 
 
@@ -175,35 +177,38 @@ def flights(results: Path) -> str:
 
 
 def benchmarks(results: Path) -> str:
-    """All that `make benchmark` timed, after a line that says where."""
+    """What `make benchmark` timed that a reader asks for first, after a line that says where."""
     table = pd.read_csv(results / "tables/benchmarks.csv")
+    table = table[table["subject"].isin(OF_SPEED) | table["subject"].str.startswith("peers_")]
     machine = table.iloc[0]
     versions = ", ".join(f"{name} {machine[name]}" for name in ("python", "numpy", "numba", "scipy", "torch"))
     commit = str(machine["commit"])[:7]
     head = f"{machine['processor']}, {machine['cores']} cores; {versions}; commit {commit}."
-    groups = table.groupby(["benchmark", "what"], sort=False)
+    groups = table.groupby(["subject", "work"], sort=False)
     return "\n\n".join([head, *(_in_turns(what, rows) for (_, what), rows in groups)])
 
 
-def _in_turns(what: str, rows: pd.DataFrame) -> str:
-    """The table of what was timed in turns."""
-    against, benchmark = rows["against"].iloc[0], rows["benchmark"].iloc[0]
+def _in_turns(work: str, rows: pd.DataFrame) -> str:
+    """The table of what was timed in turns, with errors where they are known."""
+    ours, subject = rows["ours"].iloc[0], rows["subject"].iloc[0]
+    known = rows["error_peer"].notna().any()
     cells = [
         (
-            row.case,
+            row.peer,
             _seconds(row),
-            rounded(row.ratio, 3) + ("" if row.case == against else f" ± {rounded(row.ratio_spread, 1)}"),
+            rounded(row.ratio, 3) + ("" if row.peer == ours else f" ± {rounded(row.ratio_spread, 1)}"),
+            *([percent(100.0 * row.error_peer)] if known else []),
         )
         for row in rows.itertuples()
     ]
-    title = f"**{what[0].upper()}{what[1:]}** (`benchmarks/{benchmark}.py`)"
-    return f"{title}\n\n{markdown(('', 'one call', f'of {against}'), cells)}"
+    title = f"**{work[0].upper()}{work[1:]}** (`benchmarks/{subject}.py`)"
+    return f"{title}\n\n{markdown(('', 'one call', f'of {ours}', *(['error'] if known else [])), cells)}"
 
 
 def _seconds(row: Any) -> str:
     units = ((1.0, "s"), (1e3, "ms"), (1e6, "µs"), (1e9, "ns"))
-    scale, unit = next(((s, u) for s, u in units if row.median_s * s >= 1.0), units[-1])
-    return f"{rounded(row.median_s * scale, 3)} ± {rounded(row.spread_s * scale, 1)} {unit}"
+    scale, unit = next(((s, u) for s, u in units if row.peer_s * s >= 1.0), units[-1])
+    return f"{rounded(row.peer_s * scale, 3)} ± {rounded(row.peer_spread_s * scale, 1)} {unit}"
 
 
 TABLES: dict[str, Callable[[Path], str]] = {

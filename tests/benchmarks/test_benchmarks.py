@@ -63,7 +63,7 @@ def test_each_timing_is_a_row_where_a_file_is_named(timing, clock, tmp_path, mon
     monkeypatch.setenv(timing.ROWS, str(rows))
     timing.compare("two calls", {"a": passing(clock, [1.0]), "b": passing(clock, [4.0])}, repeats=3)
     found = list(csv.DictReader(rows.read_text().splitlines(), timing.COLUMNS))
-    assert [(row["what"], row["case"], row["against"]) for row in found] == [
+    assert [(row["work"], row["peer"], row["ours"]) for row in found] == [
         ("two calls", "a", "a"),
         ("two calls", "b", "a"),
     ]
