@@ -15,8 +15,24 @@ from flexsurr.simulation.jacobian import implements_jacobian, jacobian
 from flexsurr.simulation.rhs import Array, ByKernel, implements_rhs
 
 
+class _NumberedStates:
+    """States that have no other names than x_0, x_1, …, and no dimensions."""
+
+    states: int
+
+    @property
+    def state_names(self) -> tuple[str, ...]:
+        """x_0, x_1, …"""
+        return tuple(f"x_{i}" for i in range(self.states))
+
+    @property
+    def state_units(self) -> tuple[str, ...]:
+        """Without dimensions."""
+        return ("1",) * self.states
+
+
 @dataclass(frozen=True)
-class KernelModel(ByKernel):
+class KernelModel(_NumberedStates, ByKernel):
     """A compiled model made of nothing but a kernel."""
 
     kernel: Any
@@ -24,34 +40,14 @@ class KernelModel(ByKernel):
     breakpoints: tuple[float, ...] = ()
     work_size: int = 0
 
-    @property
-    def state_names(self) -> tuple[str, ...]:
-        """x_0, x_1, …"""
-        return tuple(f"x_{i}" for i in range(self.states))
-
-    @property
-    def state_units(self) -> tuple[str, ...]:
-        """Without dimensions."""
-        return ("1",) * self.states
-
 
 @dataclass(frozen=True)
-class PythonModel:
+class PythonModel(_NumberedStates):
     """A model that has no compiled form: ẋ = function(t, x)."""
 
     function: Callable[[float, Array], Array]
     states: int = 1
     breakpoints: tuple[float, ...] = ()
-
-    @property
-    def state_names(self) -> tuple[str, ...]:
-        """x_0, x_1, …"""
-        return tuple(f"x_{i}" for i in range(self.states))
-
-    @property
-    def state_units(self) -> tuple[str, ...]:
-        """Without dimensions."""
-        return ("1",) * self.states
 
     def derivative(self, t: float, x: Array) -> Array:
         """The rates at time t [s]."""

@@ -34,6 +34,7 @@ _waits = True
 def compile_once() -> None:
     """Have numba do so with whatever it compiles from now on."""
     IndexDataCacheFile.save = _save
+    # replaced for all, which types refuse
     Dispatcher.compile = _compile  # type: ignore[assignment, method-assign]
 
 

@@ -19,6 +19,7 @@ from numba.core.dispatcher import Dispatcher, _FunctionCompiler  # type: ignore[
 from numba.core.environment import lookup_environment
 from numba.core.sigutils import normalize_signature
 
+# Types are ignored where numba's own leave out what is private to it, or refuse that it is replaced.
 _UNTRANSLATED = "untranslated"
 _ENVIRONMENT = "_ZN08NumbaEnv"
 
