@@ -261,8 +261,10 @@ def test_one_command_makes_every_picture_of_the_documents(quick, tmp_path, capsy
 def test_results_without_pages_leave_their_pictures_as_they_are(tmp_path, capsys):
     figure = tmp_path / "results" / "figures" / "answer.png"
     figure.parent.mkdir(parents=True)
-    figure.write_bytes(b"drawn")
+    drawn = np.zeros((4, 6, 3))
+    drawn[1, 2] = 1
+    plt.imsave(figure, drawn)
     pictures.pictures(tmp_path / "results", tmp_path)
     assert [path.name for path in tmp_path.glob("*.*")] == ["answer.png"]
-    assert (tmp_path / "answer.png").read_bytes() == b"drawn"
+    np.testing.assert_array_equal(plt.imread(tmp_path / "answer.png")[..., :3], drawn)
     assert capsys.readouterr().out.count("there is no") == 5
