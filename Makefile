@@ -83,9 +83,12 @@ smoke: $(INSTALLED)
 		results-smoke/tables/cost.csv results-smoke/figures/cantilever/figure_11.svg
 
 # A file of tests stays in one process; those that take long come first (tests/conftest.py). There is a process
-# more than cores, for some of them wait: for Slurm, for servers, for a browser.
-test: check browser postgresql slurm compiler
-	OMP_NUM_THREADS=1 python -m pytest -n $$(($$(nproc) + 1)) --dist loadfile --no-loadscope-reorder tests
+# more than cores, for some of them wait: for Slurm, for servers, for a browser. The checks run beside them; what
+# they found comes last.
+test: $(INSTALLED) browser postgresql slurm compiler
+	@mkdir -p build; make check > build/check.out 2>&1 & checks=$$!; \
+	OMP_NUM_THREADS=1 python -m pytest -n $$(($$(nproc) + 1)) --dist loadfile --no-loadscope-reorder tests; \
+	tests=$$?; wait $$checks || { cat build/check.out; exit 1; }; exit $$tests
 
 # numba's machine code is not seen: the equations of kernels count as missed, and other tests hold them.
 coverage: $(INSTALLED)

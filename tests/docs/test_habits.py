@@ -1,9 +1,12 @@
 """What a contributor is told to run is what is run."""
 
 import re
+import shutil
+import subprocess
 from collections import Counter
 from pathlib import Path
 
+import pytest
 import yaml
 
 import flexsurr
@@ -28,6 +31,27 @@ def test_hooks_before_a_commit_run_what_make_check_runs():
         *(f"make --silent {x}" for x in first),
     ]
     assert all(hook["language"] == "system" for hook in hooks[0]["hooks"])
+
+
+CHECKS = ("ruff", "snakefmt", "mypy", "lint-imports")
+
+
+@pytest.mark.parametrize("failing", ["", *CHECKS, "python"])
+def test_what_a_check_finds_beside_the_tests_ends_make_test(tmp_path, failing):
+    """Stand-ins of the tools say their names, and one of them fails."""
+    tools = tmp_path / ".venv/bin"
+    tools.mkdir(parents=True)
+    for name in ("Makefile", "environment.txt", "pyproject.toml"):
+        shutil.copy(TOP / name, tmp_path)
+    (tmp_path / ".venv/.installed").touch()
+    for tool in ("snakemake", "python", *CHECKS):
+        (tools / tool).write_text(f"#!/bin/sh\necho {tool} says\nexit {int(tool == failing)}\n")
+        (tools / tool).chmod(0o755)
+    done = subprocess.run(["make", "test"], cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    said = done.stdout.splitlines()
+    assert (done.returncode == 0) == (failing == "")
+    assert said[0] == "python says"
+    assert (f"{failing} says" in said[1:]) == (failing in CHECKS)
 
 
 def test_make_help_has_every_target():
