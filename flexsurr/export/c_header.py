@@ -1,13 +1,10 @@
 """A model as one C99 header without dependencies: functions of arrays, names and units, a stepper."""
 
-import textwrap
 from collections.abc import Sequence
 
 from flexsurr.export.c_statements import HELPERS, Statements
 from flexsurr.export.expressions import Value
 from flexsurr.export.model import ExportedModel, Quantity, allowed_range
-
-WIDTH = 100
 
 STEP = """\
 /* One step of the classical Runge-Kutta method of order 4 over h seconds, u held: x is overwritten.
@@ -196,8 +193,9 @@ def _texts(name: str, kind: str, quantities: Sequence[Quantity]) -> str:
 
 
 def _strings(texts: Sequence[str]) -> list[str]:
-    rows = textwrap.wrap(", ".join(map(_quoted, texts)) or "NULL", WIDTH, break_long_words=False)
-    return [f"static const char *const texts[{max(len(texts), 1)}] = {{", *(f"    {r}" for r in rows), "};"]
+    # a line each, for a unit may hold spaces, at which no line may end
+    rows = [f"    {_quoted(text)}," for text in texts] or ["    NULL"]
+    return [f"static const char *const texts[{len(rows)}] = {{", *rows, "};"]
 
 
 def _quoted(text: str) -> str:

@@ -93,7 +93,8 @@ def _binary(name: str, text: dict[str, str]) -> dict[str, bytes]:
             check=False,
         )
         if done.returncode:
-            first = next(iter(done.stderr.splitlines()), "it says nothing")
+            lines = done.stderr.splitlines() or ["it says nothing"]
+            first = next((line for line in lines if "error" in line), lines[0])
             raise NotExported(f"the C compiler {compiler} fails: {first}")
         return {f"binaries/{machine}-{system}/{library}": (Path(folder) / library).read_bytes()}
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from flexsurr.aerodynamics.features import ALPHA, BETA, COEFFICIENTS, FEATURES, MACH
 from flexsurr.beam import reduce, tip_position, tip_twist
+from flexsurr.cli.export import UNITS
 from flexsurr.config.aircraft import load_aircraft
 from flexsurr.config.along_span import AlongSpan
 from flexsurr.config.structure import Structure
@@ -76,21 +77,26 @@ WINGS = {
 
 @dataclass(frozen=True)
 class Case:
-    """A model; states x (m, d) and inputs u (m, n); and the rates and outputs that it stands for."""
+    """A model; states x (m, d) and inputs u (m, n); and the rates and outputs that it stands for.
+
+    `cancelling` is how many times the sizes of an output's terms are the output's own: rounding grows by it.
+    """
 
     model: ExportedModel
     x: np.ndarray
     u: np.ndarray
     rates: np.ndarray
     outputs: np.ndarray
+    cancelling: float = 1.0
 
 
-def of_surrogate(name, surrogate, structure: Structure | None = None) -> Case:
-    """A surrogate, under generalised forces where it takes any."""
-    basis = reduce(structure, Reduction(modes=3, normalisation="mass")) if structure is not None else None
+def of_surrogate(name, surrogate, structure: Structure | None = None, span: float = 1.0) -> Case:
+    """A surrogate at states within `span` of its scale, under generalised forces where it takes any."""
     generator = np.random.default_rng(1)
     d = len(surrogate.state_names)
-    scale = surrogate.scaling.states(d)
+    reduction = Reduction(modes=d // 2, normalisation="mass")
+    basis = reduce(structure, reduction) if structure is not None else None
+    scale = span * surrogate.scaling.states(d)
     saved = SavedSurrogate(surrogate, "tests", "hamiltonian", name, -scale, scale, basis)
     model = exported_surrogate(saved)
     x = scale * generator.uniform(-1.0, 1.0, (SAMPLES, d))
@@ -112,7 +118,21 @@ def of_map(name, learned) -> Case:
     low, high = learned.inputs.low, learned.inputs.high
     u = np.random.default_rng(2).uniform(low, high, (SAMPLES, len(low)))
     nothing = np.empty((SAMPLES, 0))
-    return Case(exported_map(learned, name), nothing, u, nothing, learned(u))
+    units = [[UNITS.get(of, "") for of in names] for names in (learned.inputs.names, learned.output_names)]
+    return Case(exported_map(learned, name, None, *units), nothing, u, nothing, learned(u))
+
+
+def of_cancelling_terms(name) -> Case:
+    """A network as training leaves it: squares of its inputs, by differences of neurons nearly alike."""
+    n, width, sigma = 3, 1e-2, np.tanh
+    inner = np.hstack([width * np.eye(n), np.zeros((n, 1)), -width * np.eye(n)])
+    readout = np.concatenate([np.ones(n), [-2.0 * n], np.ones(n)]) / width**2
+    parameters = np.concatenate([inner.ravel(), np.ones(2 * n + 1), readout, np.zeros(1)])
+    inputs = Intervals(("a", "b", "c"), -np.ones(n), np.ones(n))
+    outputs = Intervals(("square",), -np.ones(1), np.ones(1))
+    plain = of_map(name, NetworkMap(inputs, outputs, 2 * n + 1, "tanh", parameters))
+    terms = np.abs(sigma(plain.u @ inner + 1.0) * readout).sum(axis=1)
+    return replace(plain, cancelling=float(np.max(terms) / np.max(np.abs(plain.outputs))))
 
 
 def of_aircraft(name, learned: PolynomialMap) -> Case:
@@ -230,8 +250,12 @@ def _makers() -> dict[str, Callable[[], Case]]:
         makers[name] = partial(of_surrogate, name, OF_WING["wing_mlp"], wing)
     for name, surrogate in SURROGATES.items():
         makers[name] = partial(of_surrogate, name, surrogate)
+    of_eight_modes = network(MLP, 16, (8,), "tanh")
+    makers["eight_modes"] = partial(of_surrogate, "eight_modes", of_eight_modes, WING, span=0.05)
     for name, learned in maps().items():
         makers[name] = partial(of_map, name, learned)
+    makers["aerodynamics"] = partial(of_map, "aerodynamics", aerodynamics())
+    makers["cancelling"] = partial(of_cancelling_terms, "cancelling")
     makers["aircraft"] = partial(of_aircraft, "aircraft", aerodynamics())
     for form in MODULES:
         makers[form.__name__] = partial(_module, form, 4)
