@@ -58,6 +58,8 @@ class CompiledBeam(ByKernel, BeamModel):
         eta_rates = rates(self, np.zeros(len(states)), states)[:, :r].reshape(eta.shape)
         kinetic = 0.5 * np.sum(momenta * eta_rates, axis=-1)
         elastic = 0.5 * np.sum(eta * (eta @ self.projection.stiffness.T), axis=-1)
+        if not np.any(chain(self.projection.structure).gravity):
+            return np.asarray(kinetic + elastic)
         works = self._tips(x)[1] - self._tips(np.zeros(2 * r))[1]
         return np.asarray(kinetic + elastic - works)
 

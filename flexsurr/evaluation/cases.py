@@ -118,7 +118,7 @@ def rest_state(basis: ModalBasis, load: Load | None = None, at_s: float | None =
 
 
 def energy_above_rest(basis: ModalBasis, variant: Variant, x: Array) -> Array:
-    """The exact energy H (k,) [J] of states x (k, 2r), less that of rest under gravity, which is its least.
+    """The exact energy H (...,) [J] of states x (..., 2r), less the least, that of rest under gravity.
 
     Without gravity rest is the undeformed shape, where H is 0.
     """

@@ -84,20 +84,17 @@ def long_response_errors(
     responses = simulate_ensemble(
         model, references[0].t, starts, study.evaluation.judging_integrator, threads=1
     )
-    errors, drifts, diverged = [], [], 0
-    for reference, x, completed in zip(references, responses.kept, responses.completed, strict=True):
-        if completed:
-            errors.append(tip_error(reference, tip_motion(exact, x)).whole_percent)
-            energy = energy_above_rest(basis, variant, x)
-            drifts.append(energy_error_percent(basis.structure, reference, energy, 0.0))
-        else:
-            errors.append(math.inf)
-            drifts.append(math.inf)
-            diverged += 1
+    completed = np.flatnonzero(responses.completed)
+    reached = responses.kept[completed]
+    energies = energy_above_rest(basis, variant, reached)
+    errors, drifts = ([math.inf] * (len(references) - len(completed)) for _ in range(2))
+    for k, x, energy in zip(completed, reached, energies, strict=True):
+        errors.append(tip_error(references[k], tip_motion(exact, x)).whole_percent)
+        drifts.append(energy_error_percent(basis.structure, references[k], energy, 0.0))
     return {
         "long_response_error_percent_worst": _finite(max(errors)),
         "long_response_error_percent_median": _finite(statistics.median(errors)),
         "energy_drift_percent": _finite(max(drifts)),
-        "diverged": diverged,
+        "diverged": len(references) - len(completed),
         "operations": operations(model, starts[0]),
     }
