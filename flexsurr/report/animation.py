@@ -4,15 +4,15 @@ matplotlib draws and Pillow writes; a page holds its pictures, and asks no netwo
 """
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import matplotlib
 import numpy as np
-from matplotlib.animation import FuncAnimation, PillowWriter
+from matplotlib.animation import FuncAnimation
 from matplotlib.figure import Figure
+from PIL import Image
 
 from flexsurr.report.style import BLUE, GREY, PAGE_IN, STYLE, colour, has_family, label, new_figure
 from flexsurr.simulation.rhs import Array
@@ -108,7 +108,7 @@ class Moving:
             axis.get_major_locator().set_params(nbins=2 if short else 4)
 
     def show(self, frame: int) -> list[Any]:
-        """Move everything to one of the times; a motion that has ended stays where it was."""
+        """Move everything to one of the times, and return it; a motion that has ended stays where it was."""
         for name, line, trail in self.lines:
             nodes = self.motions[name]
             at = min(frame, len(nodes) - 1)
@@ -119,7 +119,26 @@ class Moving:
             ended = f", ended at {self.t[last]:.3g} s" if frame > last else ""
             title.set_text(_called(name) + ended)
         self.clock.set_text(f"{self.t[frame]:.3g} s")
-        return [self.clock]
+        return self.moving
+
+    @property
+    def moving(self) -> list[Any]:
+        """All that differs between frames."""
+        lines = (each for _, line, trail in self.lines for each in (line, trail))
+        return [*lines, *(title for _, title in self.titles), self.clock]
+
+    def pictures(self) -> Iterator[Image.Image]:
+        """The frames, one after another: what does not move is drawn once for all of them."""
+        canvas: Any = self.figure.canvas
+        for artist in self.moving:
+            artist.set_animated(True)
+        canvas.draw()
+        still = canvas.copy_from_bbox(self.figure.bbox)
+        for frame in range(self.frames):
+            canvas.restore_region(still)
+            for artist in self.show(frame):
+                self.figure.draw_artist(artist)
+            yield Image.fromarray(np.array(canvas.buffer_rgba())).convert("RGB")
 
     def _place(self, line: Any, points: Array) -> None:
         if self.flat:
@@ -147,28 +166,20 @@ def save_animation(motions: Mapping[str, Array], t: Array, title: str, path: Pat
         raise ValueError(f"{path}: there is no motion to show")
     with matplotlib.rc_context(STYLE):
         moving = Moving(motions, t, title)
-        film = FuncAnimation(
-            moving.figure, moving.show, frames=moving.frames, interval=1000 / FRAMES_A_SECOND, blit=False
-        )
         with replacing(path) as beside:
             if path.suffix == ".html":
-                beside.write_text(_page(film, title), encoding="utf-8")
+                beside.write_text(_page(moving), encoding="utf-8")
             else:
-                _save_gif(film, beside)
+                first, *others = moving.pictures()
+                each_ms = 1000 // FRAMES_A_SECOND
+                first.save(beside, "GIF", save_all=True, append_images=others, duration=each_ms, loop=0)
 
 
-def _save_gif(film: FuncAnimation, path: Path) -> None:
-    # Pillow knows the format by the file's ending, which `path` need not have
-    with TemporaryDirectory() as folder:
-        named = Path(folder) / "film.gif"
-        film.save(str(named), writer=PillowWriter(fps=FRAMES_A_SECOND), dpi=100)
-        path.write_bytes(named.read_bytes())
-
-
-def _page(film: FuncAnimation, title: str) -> str:
+def _page(moving: Moving) -> str:
     """The player of matplotlib with its pictures, without what it would fetch."""
+    film = FuncAnimation(moving.figure, moving.show, frames=moving.frames, blit=False)
     player = re.sub(r"<link[^>]*>", "", film.to_jshtml(fps=FRAMES_A_SECOND, embed_frames=True))
     for icon, sign in SIGNS.items():
         player = player.replace(f'<i class="fa {icon}"></i>', sign)
-    head = f'<head><meta charset="utf-8"><title>{title}</title></head>'
+    head = f'<head><meta charset="utf-8"><title>{moving.title}</title></head>'
     return f'<!DOCTYPE html>\n<html lang="en">{head}\n<body>{player}</body></html>\n'

@@ -54,6 +54,20 @@ def test_a_motion_that_ended_early_stays_where_it_was():
     assert ax.get_title(loc="left") == f"MLP, ended at {T[2]:.3g} s"
 
 
+@pytest.mark.parametrize("sideways", [0.0, 0.5])
+def test_what_is_drawn_over_what_stays_is_the_whole_figure(sideways):
+    motions = {"reference": swinging(0.0, sideways), "mlp": swinging(0.1, sideways, times=T[:3])}
+    moving = Moving(motions, T, "rod")
+    pictures = list(moving.pictures())
+    assert len(pictures) == len(T)
+    for artist in moving.moving:
+        artist.set_animated(False)
+    for frame, picture in enumerate(pictures):
+        moving.show(frame)
+        moving.figure.canvas.draw()
+        np.testing.assert_array_equal(picture, np.asarray(moving.figure.canvas.buffer_rgba())[..., :3])
+
+
 def test_labels_in_space_lie_within_the_picture_and_the_reference_is_named():
     moving = Moving({"rom": swinging(0.0, 0.5), "hnn": swinging(0.1, 0.5)}, T, "rod")
     assert moving.figure.get_suptitle() == "rod  (grey: reduced order)"
