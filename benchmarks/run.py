@@ -30,6 +30,7 @@ BENCHMARKS = (
     "beam_right_hand_sides",
     "structures",
     "surrogates",
+    "jacobians",
     "counted",
     "chosen",
     "ensembles",

@@ -50,6 +50,32 @@ def implements_mapping(
     return register
 
 
+_derivatives: dict[type, Callable[..., None]] = {}
+
+
+def mapping_jacobian(kernel: Any, u: Array, jac: Array, work: Array) -> None:
+    """Write ∂y_i/∂u_j into jac (outputs · inputs,), row by row. `work` is as of `mapping`.
+
+    Callable from compiled code only, for mappings that have registered it.
+    """
+    raise not_compiled("Jacobian of a mapping", "mapping_jacobian", kernel)
+
+
+def implements_mapping_jacobian(kernel_class: type) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Register the decorated (kernel, u, jac, work) -> None as `mapping_jacobian` of `kernel_class`."""
+
+    def register(derivatives: Callable[..., None]) -> Callable[..., None]:
+        _derivatives[kernel_class] = derivatives
+        return derivatives
+
+    return register
+
+
+@overload(mapping_jacobian, jit_options={"fastmath": FLOATING_POINT, "error_model": "numpy", "_nrt": False})
+def _resolve_jacobian(kernel, u, jac, work):
+    return _derivatives.get(kernel.instance_class) if isinstance(kernel, types.BaseNamedTuple) else None
+
+
 @njit(cache=True, error_model="numpy")
 def evaluate_mapping(kernel, u, y, work):
     """`mapping` as a call from Python, row by row: `u` (m, inputs), `y` (m, outputs) is written."""

@@ -10,6 +10,7 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
+from numba import njit
 
 from flexsurr.simulation.history import (
     HistoriesKernel,
@@ -18,8 +19,9 @@ from flexsurr.simulation.history import (
     histories_kernel,
     history_factor,
 )
-from flexsurr.simulation.mapping import mapping
-from flexsurr.simulation.rhs import Array, ByKernel, Forced, implements_rhs, rhs
+from flexsurr.simulation.jacobian import implements_jacobian, jacobian
+from flexsurr.simulation.mapping import mapping, mapping_jacobian
+from flexsurr.simulation.rhs import FLOATING_POINT, Array, ByKernel, Forced, implements_rhs, rhs
 from flexsurr.surrogates.learned_map import LearnedMap
 
 
@@ -45,6 +47,30 @@ def _learned_load(kernel, t, x, dx, work):
             known = True
         for i in range(r):
             dx[r + i] += factor * work[k * r + i]
+
+
+@implements_jacobian(LearnedLoadKernel)
+def _jacobian_under_learned_load(kernel, t, x, dx, jac, work):
+    d, loads = x.size, kernel.histories.kinds.size
+    r = d // 2
+    rates, forces = work[:d], work[d : d + loads * r]
+    scratch = work[d + loads * r :]
+    for i in range(d):
+        rates[i] = dx[i]
+    mapping(kernel.forces, x[:r], forces, scratch)
+    for k in range(loads):
+        factor = history_factor(kernel.histories, k, t)
+        for i in range(r):
+            rates[r + i] -= factor * forces[k * r + i]
+    taken = jacobian(kernel.model, t, x, rates, jac, scratch)
+    by_eta = work[: loads * r * r]
+    mapping_jacobian(kernel.forces, x[:r], by_eta, work[loads * r * r :])
+    for k in range(loads):
+        factor = history_factor(kernel.histories, k, t)
+        for i in range(r):
+            for j in range(r):
+                jac[r + i, j] += factor * by_eta[(k * r + i) * r + j]
+    return taken
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +102,9 @@ class LearnedLoad(ByKernel, Forced):
     def _compiled(self) -> tuple[NamedTuple, int]:
         forces = self.forces.compiled()
         kernel = LearnedLoadKernel(self.model.kernel, forces.kernel, histories_kernel(self.histories))
-        return kernel, len(self.forces.output_names) + forces.work_size
+        # the model's rates and the forces, or those by η, and what model or map need
+        outputs, r = len(self.forces.output_names), len(self.forces.inputs.names)
+        return kernel, 2 * r + outputs * (r + 1) + max(self.model.work_size, forces.work_size)
 
     @property
     def kernel(self) -> NamedTuple:
@@ -86,7 +114,7 @@ class LearnedLoad(ByKernel, Forced):
     @property
     def work_size(self) -> int:
         """Model and load use the same scratch, one after the other."""
-        return int(max(self.model.work_size, self._compiled[1]))
+        return int(self._compiled[1])
 
 
 class RecordedForcesKernel(NamedTuple):
@@ -97,10 +125,9 @@ class RecordedForcesKernel(NamedTuple):
     u: Array
 
 
-@implements_rhs(RecordedForcesKernel, inline=False)
-def _recorded_forces(kernel, t, x, dx, work):
-    rhs(kernel.model, t, x, dx, work)
-    times = kernel.t
+@njit(error_model="numpy", fastmath=FLOATING_POINT, _nrt=False)
+def _sample(times, t):
+    """The sample before t [s], and the share of the next one, 0 to 1."""
     below, above = 0, times.size - 1
     while above - below > 1:
         middle = (below + above) // 2
@@ -109,10 +136,27 @@ def _recorded_forces(kernel, t, x, dx, work):
         else:
             above = middle
     share = (t - times[below]) / (times[above] - times[below])
-    share = min(max(share, 0.0), 1.0)
+    return below, min(max(share, 0.0), 1.0)
+
+
+@implements_rhs(RecordedForcesKernel, inline=False)
+def _recorded_forces(kernel, t, x, dx, work):
+    rhs(kernel.model, t, x, dx, work)
+    below, share = _sample(kernel.t, t)
     r = x.size // 2
     for k in range(r):
-        dx[r + k] += (1.0 - share) * kernel.u[below, k] + share * kernel.u[above, k]
+        dx[r + k] += (1.0 - share) * kernel.u[below, k] + share * kernel.u[below + 1, k]
+
+
+@implements_jacobian(RecordedForcesKernel)
+def _jacobian_under_recorded_forces(kernel, t, x, dx, jac, work):
+    d = x.size
+    r = d // 2
+    below, share = _sample(kernel.t, t)
+    for k in range(r):
+        work[k] = dx[k]
+        work[r + k] = dx[r + k] - (1.0 - share) * kernel.u[below, k] - share * kernel.u[below + 1, k]
+    return jacobian(kernel.model, t, x, work[:d], jac, work[d:])
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,8 +185,8 @@ class RecordedForces(Forced):
 
     @property
     def work_size(self) -> int:
-        """That of the model."""
-        size: int = self.model.work_size
+        """That of the model, and its rates."""
+        size: int = self.model.work_size + len(self.state_names)
         return size
 
     def derivative(self, t: float, x: Array) -> Array:

@@ -223,6 +223,18 @@ def pull_back_along(pieces, d, phi, adjoint, slopes, variable, tangents, work):
             place += offset(1)
 
 
+@njit(fastmath=FLOATING_POINT, error_model="numpy", _nrt=False, cache=True)
+def write_hessian(pieces, d, phi, adjoint, slopes, inverse, hessian, tangents, work):
+    """Second derivatives (d, d) at `hessian`, row by row, of what `pull_back` has left the first ones of.
+
+    By what becomes a variable when it is taken times its `inverse` (d,). Scratch as of `pull_back_along`.
+    """
+    for m in range(d):
+        pull_back_along(pieces, d, phi, adjoint, slopes, m, tangents, work)
+        for k in range(d):
+            work[hessian + k * d + m] = work[tangents + k] * inverse[k] * inverse[m]
+
+
 def _last_variable(row: tuple[int, ...]) -> int:
     return max((j for j, power in enumerate(row) if power), default=0)
 

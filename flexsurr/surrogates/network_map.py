@@ -11,9 +11,9 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from flexsurr.simulation.mapping import CompiledMapping, implements_mapping
+from flexsurr.simulation.mapping import CompiledMapping, implements_mapping, implements_mapping_jacobian
 from flexsurr.simulation.rhs import Array
-from flexsurr.surrogates.activations import ActivationFunction, activation_function, value
+from flexsurr.surrogates.activations import ActivationFunction, activation_function, slope, value
 from flexsurr.surrogates.layers import Dense, Shapes, forward, layer_shapes, offset, read, size_of, views
 from flexsurr.surrogates.learned_map import Intervals
 
@@ -124,7 +124,8 @@ class NetworkMap:
             np.array(self.products, dtype=np.int64).reshape(-1, 2),
             _read_neurons(readout),
         )
-        return CompiledMapping(kernel, len(weights) + self.hidden, self.inputs.names, self.outputs.names)
+        # inputs and neurons, and one output's share of them in the Jacobian
+        return CompiledMapping(kernel, len(weights) + 2 * self.hidden, self.inputs.names, self.outputs.names)
 
     def settings(self) -> dict[str, Any]:
         """Neurons, activation and products."""
@@ -202,3 +203,33 @@ def _network_map(kernel, u, y, work):
         first = offset(reads[i, 0])
         count = offset(reads[i, 1]) - first
         y[i] = constants[i] + read(readout, i * hidden + first, work, inputs + first, count)
+
+
+@implements_mapping_jacobian(NetworkMapKernel)
+def _jacobian_of_network_map(kernel, u, jac, work):
+    activation, origin, layer, readout, constants, products, reads = kernel
+    # work: the inputs and their products, slopes of the neurons, those times an output's weights
+    n = offset(origin.size)
+    inputs = n + offset(products.shape[0])
+    hidden = offset(readout.size // constants.size)
+    weighted = inputs + hidden
+    for j in range(n):
+        work[j] = u[j] - origin[j]
+    for m in range(offset(products.shape[0])):
+        work[n + m] = work[products[m, 0]] * work[products[m, 1]]
+    forward(layer, offset(0), inputs, hidden, work, offset(0), inputs)
+    for k in range(hidden):
+        work[inputs + k] = slope(activation, work[inputs + k])
+    for i in range(offset(constants.size)):
+        first = offset(reads[i, 0])
+        count = offset(reads[i, 1]) - first
+        for k in range(count):
+            work[weighted + k] = readout[i * hidden + first + k] * work[inputs + first + k]
+        for j in range(n):
+            jac[i * n + j] = read(layer, j * hidden + first, work, weighted, count)
+        for m in range(offset(products.shape[0])):
+            by_product = read(layer, (n + m) * hidden + first, work, weighted, count)
+            one = offset(products[m, 0])
+            other = offset(products[m, 1])
+            jac[i * n + one] += by_product * work[other]
+            jac[i * n + other] += by_product * work[one]

@@ -7,7 +7,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from flexsurr.simulation.mapping import CompiledMapping, implements_mapping
+from flexsurr.simulation.mapping import CompiledMapping, implements_mapping, implements_mapping_jacobian
 from flexsurr.simulation.rhs import Array
 from flexsurr.surrogates.layers import offset
 from flexsurr.surrogates.learned_map import Intervals
@@ -16,6 +16,7 @@ from flexsurr.surrogates.monomials import (
     differentiate,
     evaluate_monomials,
     factors,
+    pull_back,
     runs,
     write_monomials,
 )
@@ -79,7 +80,8 @@ class PolynomialMap:
             pieces,
             np.ascontiguousarray(self.coefficients[order].T).ravel(),
         )
-        work_size = n * (n + 3) // 2 + len(self.exponents)
+        # factors and monomials, and what the Jacobian needs besides, as much again
+        work_size = n * (n + 3) + 2 * len(self.exponents)
         return CompiledMapping(kernel, work_size, self.inputs.names, self.output_names)
 
     def settings(self) -> dict[str, Any]:
@@ -118,3 +120,25 @@ def _polynomial_map(kernel, u, y, work):
         for k in range(count):
             total += coefficients[row + k] * work[phi + k]
         y[i] = total
+
+
+@implements_mapping_jacobian(PolynomialMapKernel)
+def _jacobian_of_polynomial_map(kernel, u, jac, work):
+    origin, inverse, pieces, coefficients = kernel
+    n = offset(origin.size)
+    outputs = offset(jac.size) // n
+    count = offset(coefficients.size) // outputs
+    # work: factors and monomials, their derivatives
+    size = n + n * (n + offset(1)) // offset(2)
+    phi = size
+    adjoint = phi + count
+    slopes = adjoint + count
+    for i in range(n):
+        work[i] = (u[i] - origin[i]) * inverse[i]
+    write_monomials(pieces, n, phi, work)
+    for i in range(outputs):
+        for k in range(count):
+            work[adjoint + k] = coefficients[i * count + k]
+        pull_back(pieces, n, phi, adjoint, slopes, work)
+        for j in range(n):
+            jac[i * n + j] = work[slopes + j] * inverse[j]

@@ -21,7 +21,7 @@ from flexsurr.surrogates.layers import (
     views,
     write_products,
 )
-from flexsurr.surrogates.mirrored_mass import Images, MirroredNetworkKernel
+from flexsurr.surrogates.mirrored_mass import Images, mirrored_kernel
 from flexsurr.surrogates.packed import OPTIONS, lower, pack, packed_size, rows_and_columns, symmetric
 from flexsurr.surrogates.port_hamiltonian import PortHamiltonian, jacobian_of_motion, springs_and_dampers
 
@@ -156,23 +156,13 @@ class NetworkPortHamiltonian(PortHamiltonian):
         """The same of neurons with their images, which are read together; `roots` (r,) are those of S."""
         images = Images.of(mirrors)
         weights, biases, readout, constant, *_ = self.arrays()
-        neurons = self.hidden[0]
-        h = neurons // images.number
+        h = self.hidden[0] // images.number
         _, of_q, *_ = self.scales()
         rows, columns = rows_and_columns(self.pairs)
         of_entries = roots[rows] * roots[columns]
-        kernel = MirroredNetworkKernel(
-            self.sigma.tag,
-            np.concatenate([(weights[:, :h] / of_q[:, None]).ravel(), biases[:h]]),
-            (readout[:, :h] * of_entries[:, None]).ravel(),
-            (constant + self.floor) * of_entries,
-            np.ascontiguousarray(self.stiffness).ravel(),
-            np.ascontiguousarray(self.damping).ravel(),
-            (h * images.of_coordinates).astype(np.uint64),
-            (h * images.of_entries).astype(np.uint64),
-            neurons,
-        )
-        return kernel, 3 * neurons + self.packed_size + self.pairs
+        of_neurons = weights[:, :h] / of_q[:, None], biases[:h], readout[:, :h] * of_entries[:, None]
+        constant = (constant + self.floor) * of_entries
+        return mirrored_kernel(images, self.sigma.tag, of_neurons, constant, self.stiffness, self.damping)
 
     def settings(self) -> dict[str, Any]:
         """Hidden layer, activation, parity and what the network gives; the floor is saved as an array."""

@@ -17,8 +17,8 @@ from flexsurr.surrogates.monomials import (
     evaluate_monomials,
     factors,
     pull_back,
-    pull_back_along,
     runs,
+    write_hessian,
     write_monomials,
 )
 from flexsurr.surrogates.packed import lower, symmetric
@@ -244,9 +244,6 @@ def _jacobian_of_polynomial(kernel, t, x, dx, jac, work):
         for k in range(count):
             work[adjoint + k] += weight * mass[e * count + k]
     pull_back(pieces, r, phi, adjoint, slopes, work)
-    for m in range(r):
-        pull_back_along(pieces, r, phi, adjoint, slopes, m, tangents, work)
-        for k in range(r):
-            work[curvature + k * r + m] = work[tangents + k] * inverse_q[k] * inverse_q[m]
+    write_hessian(pieces, r, phi, adjoint, slopes, inverse_q, curvature, tangents, work)
     jacobian_of_motion(stiffness, damping, work, inverse, turned, curvature, jac)
     return 0

@@ -11,7 +11,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flexsurr.simulation.mapping import mapping
+from flexsurr.simulation.jacobian import implements_jacobian, jacobian
+from flexsurr.simulation.mapping import mapping, mapping_jacobian
 from flexsurr.simulation.rhs import Array, implements_rhs, rhs
 from flexsurr.surrogates.learned_map import Intervals
 from flexsurr.surrogates.monomials import Exponents, differentiate, evaluate_monomials
@@ -86,7 +87,9 @@ class Potential:
         gradient = PolynomialMap(
             Intervals(names, -of_q, of_q), names, lowered, coefficients * of_forces
         ).compiled()
-        return PotentialKernel(model, gradient.kernel), max(work_size, of_q.size + gradient.work_size)
+        # rates of the model or the Hessian, and what either of the two needs
+        r = of_q.size
+        return PotentialKernel(model, gradient.kernel), (2 + r) * r + max(work_size, gradient.work_size)
 
 
 class PotentialKernel(NamedTuple):
@@ -103,3 +106,21 @@ def _with_potential(kernel, t, x, dx, work):
     mapping(kernel.gradient, x[:r], work[:r], work[r:])
     for i in range(r):
         dx[r + i] -= work[i]
+
+
+@implements_jacobian(PotentialKernel)
+def _jacobian_with_potential(kernel, t, x, dx, jac, work):
+    d = x.size
+    r = d // 2
+    rates = work[:d]
+    mapping(kernel.gradient, x[:r], rates[r:], work[d:])
+    for i in range(r):
+        rates[i] = dx[i]
+        rates[r + i] += dx[r + i]
+    taken = jacobian(kernel.model, t, x, rates, jac, work[d:])
+    hessian = work[: r * r]
+    mapping_jacobian(kernel.gradient, x[:r], hessian, work[r * r :])
+    for i in range(r):
+        for j in range(r):
+            jac[r + i, j] -= hessian[i * r + j]
+    return taken

@@ -7,13 +7,20 @@ group is a dense product with them. Mirror symmetry makes few groups of many ent
 from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
-from flexsurr.simulation.linear_solvers import solve_packed
+from flexsurr.simulation.jacobian import implements_jacobian
+from flexsurr.simulation.linear_solvers import invert_packed, solve_packed
 from flexsurr.simulation.rhs import Array, implements_rhs
 from flexsurr.surrogates.layers import offset
-from flexsurr.surrogates.monomials import pull_back, write_monomials
-from flexsurr.surrogates.port_hamiltonian import springs_and_dampers, write_kinetic_adjoint
+from flexsurr.surrogates.monomials import pull_back, write_hessian, write_monomials
+from flexsurr.surrogates.packed import OPTIONS
+from flexsurr.surrogates.port_hamiltonian import (
+    jacobian_of_motion,
+    springs_and_dampers,
+    write_kinetic_adjoint,
+)
 
 
 class SparseMassKernel(NamedTuple):
@@ -62,25 +69,15 @@ def sparse_kernel(
         count,
     )
     r = len(inverse_q)
-    return kernel, 3 * r + 3 * entries + 3 * count
+    size = r + entries
+    # of the right-hand side 2 size + 3 count + entries + r; its Jacobian needs more
+    return kernel, 4 * size + 5 * count + entries + 3 * r * r
 
 
-@implements_rhs(SparseMassKernel, inline=False)
-def _sparse_mass(kernel, t, x, dx, work):
-    inverse_q, pieces, groups, places, order, mass, stiffness, damping, monomials = kernel
-    r = offset(inverse_q.size)
-    entries = offset(order.size)
-    count = offset(monomials)
-    # work: factors and their adjoints, monomials and theirs, those of a group, the packed M, the rates
-    slopes = r + entries
-    phi = slopes + r + entries
-    adjoint = phi + count
-    fetched = adjoint + count
-    matrix = fetched + count
-    rates = matrix + entries
-    for i in range(r):
-        work[i] = x[i] * inverse_q[i]
-    write_monomials(pieces, r, phi, work)
+@njit(forceinline=True, **OPTIONS)
+def _write_mass(kernel, phi, fetched, matrix, work):
+    """The packed M at `matrix` of the monomials at `phi`."""
+    groups, places, order, mass = kernel.groups, kernel.places, kernel.entries, kernel.mass
     place = offset(0)
     e = offset(0)
     row = offset(0)
@@ -96,13 +93,12 @@ def _sparse_mass(kernel, t, x, dx, work):
             row += some
             e += offset(1)
         place += some
-    for i in range(r):
-        work[rates + i] = x[r + i]
-    solve_packed(work, np.int64(matrix), np.int64(rates), np.int64(r))
-    for i in range(r):
-        dx[i] = work[rates + i]
-    # the adjoint of ½ q̇ᵀ M q̇: by the entries of M, in their places; by the monomials; by q
-    write_kinetic_adjoint(dx, r, work, matrix)
+
+
+@njit(forceinline=True, **OPTIONS)
+def _write_adjoint(kernel, weights, fetched, adjoint, count, work):
+    """Derivatives by the monomials, at `adjoint`, of the entries of M times their weights, at `weights`."""
+    groups, places, order, mass = kernel.groups, kernel.places, kernel.entries, kernel.mass
     for k in range(count):
         work[adjoint + k] = 0.0
     place = offset(0)
@@ -113,7 +109,7 @@ def _sparse_mass(kernel, t, x, dx, work):
         for k in range(some):
             work[fetched + k] = 0.0
         for _ in range(groups[g, 1]):
-            weight = work[matrix + order[e]]
+            weight = work[weights + order[e]]
             for k in range(some):
                 work[fetched + k] += weight * mass[row + k]
             row += some
@@ -121,7 +117,76 @@ def _sparse_mass(kernel, t, x, dx, work):
         for k in range(some):
             work[adjoint + places[place + k]] += work[fetched + k]
         place += some
+
+
+@implements_rhs(SparseMassKernel, inline=False)
+def _sparse_mass(kernel, t, x, dx, work):
+    inverse_q, pieces, stiffness, damping = kernel.inverse_q, kernel.pieces, kernel.stiffness, kernel.damping
+    r = offset(inverse_q.size)
+    entries = offset(kernel.entries.size)
+    count = offset(kernel.monomials)
+    # work: factors and their adjoints, monomials and theirs, those of a group, the packed M, the rates
+    slopes = r + entries
+    phi = slopes + r + entries
+    adjoint = phi + count
+    fetched = adjoint + count
+    matrix = fetched + count
+    rates = matrix + entries
+    for i in range(r):
+        work[i] = x[i] * inverse_q[i]
+    write_monomials(pieces, r, phi, work)
+    _write_mass(kernel, phi, fetched, matrix, work)
+    for i in range(r):
+        work[rates + i] = x[r + i]
+    solve_packed(work, np.int64(matrix), np.int64(rates), np.int64(r))
+    for i in range(r):
+        dx[i] = work[rates + i]
+    # the adjoint of ½ q̇ᵀ M q̇: by the entries of M, in their places; by the monomials; by q
+    write_kinetic_adjoint(dx, r, work, matrix)
+    _write_adjoint(kernel, matrix, fetched, adjoint, count, work)
     pull_back(pieces, r, phi, adjoint, slopes, work)
     for i in range(r):
         dx[r + i] = work[slopes + i] * inverse_q[i]
     springs_and_dampers(stiffness, damping, x, dx)
+
+
+@implements_jacobian(SparseMassKernel)
+def _jacobian_of_sparse_mass(kernel, t, x, dx, jac, work):
+    inverse_q, pieces = kernel.inverse_q, kernel.pieces
+    r = offset(inverse_q.size)
+    entries = offset(kernel.entries.size)
+    count = offset(kernel.monomials)
+    # work: as of the right-hand side, then M⁻¹, (∂M/∂q_k) q̇ column by column, curvature, tangents
+    slopes = r + entries
+    phi = slopes + r + entries
+    adjoint = phi + count
+    fetched = adjoint + count
+    matrix = fetched + count
+    inverse = matrix + entries
+    turned = inverse + r * r
+    curvature = turned + r * r
+    tangents = curvature + r * r
+    for i in range(r):
+        work[i] = x[i] * inverse_q[i]
+    write_monomials(pieces, r, phi, work)
+    _write_mass(kernel, phi, fetched, matrix, work)
+    invert_packed(work, np.int64(matrix), np.int64(inverse), np.int64(r))
+    # row i of M q̇, with q̇ held, is a polynomial
+    for i in range(r):
+        for e in range(entries):
+            work[matrix + e] = 0.0
+        for j in range(r):
+            low = min(i, j)
+            high = max(i, j)
+            work[matrix + high * (high + offset(1)) // offset(2) + low] = dx[j]
+        _write_adjoint(kernel, matrix, fetched, adjoint, count, work)
+        pull_back(pieces, r, phi, adjoint, slopes, work)
+        for k in range(r):
+            work[turned + i * r + k] = work[slopes + k] * inverse_q[k]
+    # and so is ½ q̇ᵀ M q̇
+    write_kinetic_adjoint(dx, r, work, matrix)
+    _write_adjoint(kernel, matrix, fetched, adjoint, count, work)
+    pull_back(pieces, r, phi, adjoint, slopes, work)
+    write_hessian(pieces, r, phi, adjoint, slopes, inverse_q, curvature, tangents, work)
+    jacobian_of_motion(kernel.stiffness, kernel.damping, work, inverse, turned, curvature, jac)
+    return 0

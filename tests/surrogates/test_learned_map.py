@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numba import njit
 
+from flexsurr.simulation.mapping import mapping_jacobian
 from flexsurr.surrogates import (
     Intervals,
     NetworkMap,
@@ -98,6 +100,26 @@ def test_compiled_it_is_the_same(kind):
     u = inputs(learned, 4, 6)
     np.testing.assert_allclose(learned.compiled()(u[0]), learned(u)[0], rtol=1e-10, atol=1e-10)
     assert learned.compiled()(u.reshape(2, 3, -1)).shape == (2, 3, len(learned.output_names))
+
+
+@njit(error_model="numpy")
+def evaluate_jacobian(kernel, u, jac, work):
+    mapping_jacobian(kernel, u, jac, work)
+
+
+def test_of_what_has_no_jacobian_there_is_none():
+    with pytest.raises(TypeError, match="NetworkMap; call mapping_jacobian from compiled code"):
+        mapping_jacobian(random_network(0), np.zeros(25), np.zeros(300), np.zeros(1))
+
+
+@EACH
+def test_compiled_its_jacobian_is_the_same(kind):
+    learned = MAPS[kind](5)
+    (u,) = inputs(learned, 6, 1)
+    function, expected = learned.compiled(), learned.jacobian(u)
+    jac = np.empty(expected.size)
+    evaluate_jacobian(function.kernel, u, jac, np.full(function.work_size, np.nan))
+    np.testing.assert_allclose(jac.reshape(expected.shape), expected, rtol=1e-10, atol=1e-10)
 
 
 @EACH
