@@ -10,7 +10,7 @@ import pandas as pd
 from flexsurr.cli.command import Job, for_rules
 from flexsurr.cli.runs import read_run
 from flexsurr.config.structure import Structure
-from flexsurr.report.catalogue import TABLES
+from flexsurr.report.catalogue import OF_AIRCRAFT, TABLES
 from flexsurr.report.pages import save_page
 from flexsurr.report.tables import TABULATE, save_table
 from flexsurr.storage import replacing
@@ -37,12 +37,14 @@ def _of_aircraft(flight: Job) -> dict[str, Any]:
     """What a figure may show of the aircraft of a job that flies it (`catalogue.OF_AIRCRAFT`)."""
     # here, for it takes a second that no figure of another study needs
     from flexsurr.cli.flight import airliner_of
+    from flexsurr.evaluation.airliner_models import lattice_operations
 
     airliner = airliner_of(flight)
     return {
         "free_modes": airliner.modes,
         "lattice": airliner.airframe.lattice,
         "doublet": airliner.settings.doublet,
+        "lattice_operations": lattice_operations(airliner, flight["boundary_condition"]),
     }
 
 
@@ -78,6 +80,8 @@ def _read(read: str, job: Job, files: Sequence[Path]) -> Any:
         return Structure.model_validate(job["structure"])
     if read in ("sweeps", "selection"):
         return job[read]
+    if read in OF_AIRCRAFT:
+        return None
     if read in ("metrics", "relatives"):
         return pd.DataFrame([read_run(path) for path in files])
     if read == "history":

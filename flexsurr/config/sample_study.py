@@ -7,6 +7,7 @@ from pydantic import Field, model_validator
 from flexsurr.config.aerodynamics import PanelCounts
 from flexsurr.config.flight import FlightSettings
 from flexsurr.config.schema import Record
+from flexsurr.config.structure import Positive
 from flexsurr.config.study import DEFAULT, Count
 
 
@@ -34,6 +35,15 @@ class SampleSettings(Record):
         return -(-self.samples // self.samples_per_shard)
 
 
+class MapSelection(Record):
+    """The rule by which a map is chosen among the runs of a kind."""
+
+    nmse_at_most: Positive | None = None
+    """Of the runs whose validation nmse is at most so much, the one is chosen that takes the fewest
+    operations. None, or where no run errs so little: the most accurate.
+    """
+
+
 class SampleStudy(Record):
     """A study of an aircraft: samples of its vortex lattice train maps, and it is flown with the best."""
 
@@ -49,6 +59,8 @@ class SampleStudy(Record):
     """
     dataset: SampleSettings = SampleSettings()
     """Its samples."""
+    selection: MapSelection = MapSelection()
+    """Which maps are chosen."""
     flight: FlightSettings = FlightSettings()
     """How the aircraft is flown."""
 

@@ -11,6 +11,7 @@ A product says what it `reads`, in the order of its function's arguments:
 | relatives | the same of every study of the same structure |
 | history | all runs' history.parquet, with a column run_id |
 | free_modes, lattice, doublet | of the study's aircraft: modes, vortex lattice, times of a doublet |
+| lattice_operations | what a call of each form of that lattice takes; None of a study without an aircraft |
 | anything else | results/evaluation/<study>/<it>.parquet; a * stands for every file that fits, concatenated |
 
 A figure may show what only some structures have: `Product.shows` says of which it is made.
@@ -67,7 +68,7 @@ EVERY_SOURCE = (*OF_FIELDS, *SAMPLES)
 LEARNED_LOADS = "learned_loads-*"
 """What is read of learned loads."""
 
-OF_AIRCRAFT = frozenset({"free_modes", "lattice", "doublet"})
+OF_AIRCRAFT = frozenset({"free_modes", "lattice", "doublet", "lattice_operations"})
 """What is read of the aircraft of a study of samples."""
 
 
@@ -115,7 +116,11 @@ FIGURES: dict[str, Product] = {
     "training_loss": Product("Training loss against wall time", ("history", "metrics"), sources=OF_FIELDS),
     "training_epochs": Product("Training loss against epochs", ("history", "metrics"), sources=OF_FIELDS),
     "trials": Product("Trials: settings against error", ("sweeps", "metrics"), sources=EVERY_SOURCE),
-    "pareto": Product("Cost against error of every trial", ("selection", "metrics"), sources=EVERY_SOURCE),
+    "pareto": Product(
+        "Cost against error of every trial",
+        ("selection", "metrics", "lattice_operations"),
+        sources=EVERY_SOURCE,
+    ),
     "figure_16": Product("The airliner and its panels", ("free_modes", "lattice"), sources=SAMPLES),
     "figure_17": Product("Distribution of mass", ("free_modes",), sources=SAMPLES),
     "figure_18": Product("Eigenvalues in trim", ("modes",), sources=SAMPLES),

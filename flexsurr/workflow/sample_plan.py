@@ -44,6 +44,11 @@ class SamplePlan(StudyPlan):
         super().__init__(resolved.name, trials_of(resolved.sweeps, resolved.study.sweeps, {}))
         self.resolved = resolved
 
+    @property
+    def rule_of_choice(self) -> Job:
+        """The study's."""
+        return self.resolved.study.selection.model_dump(mode="json")
+
     @cached_property
     def sweeps(self) -> dict[str, dict[str, Run]]:
         """The runs of each sweep by their run_id."""

@@ -82,16 +82,17 @@ def test_nothing_to_choose_from():
     assert select([RECORDS[6]]) == {}
 
 
-def test_of_maps_the_best_of_each_label_by_its_loss():
+def test_of_maps_each_label_has_its_choice_by_validation():
     records = [
-        {"run_id": "failed", "label": "network", "status": "failed", "validation_nmse": 1e-9},
-        {"run_id": "first", "label": "network", "status": "finished", "validation_nmse": 1e-3},
-        {"run_id": "better", "label": "network", "status": "finished", "validation_nmse": 1e-4},
-        {"run_id": "no number", "label": "linear", "status": "finished", "validation_nmse": None},
-        {"run_id": "baseline", "label": "linear", "status": "finished", "validation_nmse": 1.0},
+        record("failed", label="network", status="failed", validation_nmse=1e-9),
+        record("small", label="network", operations=16, validation_nmse=1e-3),
+        record("better", label="network", operations=64, validation_nmse=1e-4),
+        record("no number", label="linear", validation_nmse=None),
+        record("baseline", label="linear"),
     ]
-    chosen = select_maps(records)
-    assert {label: entry["run_id"] for label, entry in chosen.items()} == {
-        "network": "better",
-        "linear": "baseline",
-    }
+    for limit, network in ((None, "better"), (2e-3, "small"), (2e-4, "better"), (1e-5, "better")):
+        chosen = select_maps(records, limit)
+        assert {label: entry["run_id"] for label, entry in chosen.items()} == {
+            "network": network,
+            "linear": "baseline",
+        }

@@ -28,10 +28,11 @@ from flexsurr.evaluation.airliner_flights import (
     peak_errors,
     random_flights,
 )
-from flexsurr.evaluation.airliner_models import ONE_MACH, REFERENCE, Airliner, lattices
+from flexsurr.evaluation.airliner_models import ONE_MACH, REFERENCE, Airliner, lattice_operations, lattices
 from flexsurr.evaluation.airliner_modes import airliner_modes, elastic_modes, left_out_modes
 from flexsurr.evaluation.airliner_references import reference_flights
-from flexsurr.evaluation.columns import COST_COLUMNS, MODE_COLUMNS
+from flexsurr.evaluation.columns import COST_COLUMNS, MODE_COLUMNS, REBUILT
+from flexsurr.evaluation.operations import counted_outputs
 from flexsurr.flight.airliner import flexible_airframe
 from flexsurr.flight.linear_aerodynamics import linear_aerodynamics
 from flexsurr.flight.trim import TrimNotFound, trim
@@ -253,6 +254,17 @@ def test_references_are_every_random_flight_with_both_frozen_lattices_each_from_
         expected = outputs(flown(start, flight, settings))
         for name, values in outputs_in(found)[REFERENCE, flight.number].items():
             np.testing.assert_array_equal(values, expected[name])
+
+
+def test_a_few_panels_tell_what_the_whole_lattice_takes(airliner):
+    found = lattice_operations(airliner)
+    n = len(airliner.airframe.lattice)
+    u = np.zeros(25)
+    u[0] = 0.7
+    for name, form in lattices(airliner).items():
+        by_lapack = 2 / 3 * n**3 + 2 * n**2 if name == REBUILT else 0
+        assert found[name] == pytest.approx(counted_outputs(form, u)[1] + by_lapack, rel=0.02)
+    assert found["quadratic"] < found[ONE_MACH] < found[REFERENCE] < found[REBUILT]
 
 
 def test_elastic_modes_are_named_by_what_moves_and_numbered_as_in_the_paper(airliner):

@@ -280,6 +280,11 @@ def selection() -> dict[str, float]:
 
 
 @pytest.fixture
+def without_lattice() -> None:
+    """What a study without an aircraft has for it."""
+
+
+@pytest.fixture
 def sweeps(metrics) -> dict[str, list[str]]:
     """Two sweeps: one of everything, one of the polynomials alone."""
     polynomials = metrics[metrics["architecture"] == "polynomial"]

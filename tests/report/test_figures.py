@@ -29,6 +29,7 @@ FIXTURES = {
     "selection": "selection",
     "history": "history",
     "relatives": "relatives",
+    "lattice_operations": "without_lattice",
 }
 # Figures of damped structures read files of the same names, with other things in them.
 OF_DAMPED = {"energy_decay": "damped_energy"}
@@ -319,9 +320,38 @@ def test_maps_are_shown_by_their_validation(metrics):
     maps = metrics.assign(variant="sobol", architecture="network").drop(
         columns=["long_response_error_percent_worst", "diverged", "rom_operations", "fom_operations"]
     )
-    (ax,) = DRAW["pareto"]({}, maps).axes
-    assert ax.get_ylabel() == "validation nmse"
-    assert len(ax.texts) > 0
+    lattice = {"vlm_rebuild": 45_000_000, "vlm_frozen": 3_000_000}
+    figure = DRAW["pareto"]({"nmse_at_most": 1e-5}, maps, lattice)
+    (ax,) = figure.axes
+    assert ax.get_ylabel() == "validation nmse [–]"
+    assert {*lattice.values()} <= {line.get_xdata()[0] for line in ax.lines}
+    (ring,) = [line for line in ax.lines if line.get_markersize() == 9]
+    assert ring.get_xdata().tolist() == [30.0]
+    assert "1e-5: the rule of choice" in {text.get_text() for text in figure.legends[0].get_texts()}
+
+
+def test_polynomials_and_networks_have_markers_of_their_own_and_no_two_labels_are_alike(metrics):
+    settings = {"architecture": "port_hamiltonian", "variant": "hamiltonian", "optimiser": "least_squares"}
+    polynomials = metrics[metrics["architecture"] == "polynomial"].tail(1).assign(**settings, terms="all")
+    again = polynomials.assign(
+        run_id="again", operations=40, long_response_error_percent_worst=1e-4, dataset="many"
+    )
+    sparse = again.assign(
+        run_id="sparse", operations=50, long_response_error_percent_worst=1e-5, terms="sparse"
+    )
+    network = polynomials.assign(
+        run_id="network", operations=60, degree=None, hidden="8", mass_matrix="entries", optimiser="lbfgs"
+    )
+    figure = DRAW["pareto"]({}, pd.concat([polynomials, again, sparse, network]))
+    markers = [line.get_marker() for line in figure.axes[0].lines]
+    assert {"s", "o"} <= {*markers}
+    words = [text.get_text() for text in figure.axes[0].texts]
+    assert len({*words}) == len(words)
+    assert "port-Hamiltonian degree 6, many" in words
+    assert "port-Hamiltonian degree 6 sparse" in words
+    assert any(word.endswith("entries") for word in words)
+    legend = {text.get_text() for text in figure.legends[0].get_texts()}
+    assert {"port-Hamiltonian, polynomial", "port-Hamiltonian, network"} <= legend
 
 
 def test_a_study_without_a_finished_run_is_drawn(metrics):
