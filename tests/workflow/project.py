@@ -10,12 +10,14 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import forked_snakemake
 import yaml
 
 from flexsurr.config.settings import load
 from flexsurr.workflow.plan import Plan
 
 CONFIGURATION = ("config/config.yaml", "config/presets/quick.yaml")
+ALWAYS = ("--configfile", CONFIGURATION[1], "--cores", "2")
 SAID = "snakemake.out"
 NOWHERE = "http://127.0.0.1:9"
 """A tracking server that nobody runs: nothing listens there, which is known at once."""
@@ -37,15 +39,11 @@ class Project:
     def plan(self) -> Plan:
         return Plan(load(self.root, CONFIGURATION))
 
-    @property
-    def command(self) -> list[str]:
-        return [sys.executable, "-m", "snakemake", "--configfile", CONFIGURATION[1], "--cores", "2"]
-
     def start(self, *options: str, said: str = SAID) -> subprocess.Popen:
         """Snakemake in a session of its own, as a terminal would run it; its output goes to `said`."""
         with (self.root / said).open("w") as output:
             process = subprocess.Popen(
-                [*self.command, *options],
+                [sys.executable, "-m", "snakemake", *ALWAYS, *options],
                 cwd=self.root,
                 env=os.environ | {"PYTHONPATH": str(self.code)},
                 stdout=output,
@@ -58,7 +56,7 @@ class Project:
 
     def run(self, *options: str, said: str = SAID) -> tuple[int, str]:
         """Run Snakemake to its end: exit code and everything it printed."""
-        code = self.start(*options, said=said).wait(timeout=1800)
+        code = forked_snakemake.run([*ALWAYS, *options], self.root, self.code, self.root / said)
         return code, (self.root / said).read_text()
 
     def run_well(self, *options: str) -> str:

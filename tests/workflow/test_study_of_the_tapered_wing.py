@@ -23,7 +23,7 @@ def wing(make_project):
         "dataset": {"trajectories": 6, "trajectories_per_shard": 6, "duration_s": 0.1, "integrator": SCIPY},
         "evaluation": {
             "simulations": 1,
-            "duration_s": 0.1,
+            "duration_s": 0.03,
             "output_step_s": 0.01,
             "repeats": 1,
             "long_responses": 1,
