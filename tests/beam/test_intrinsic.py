@@ -33,7 +33,7 @@ WING = Structure(
     chord_m=1.0,
     centre_of_gravity_offset_m=0.1,
 )
-TIGHT = Integrator(method="dop853", rtol=1e-9, atol=1e-11)
+TIGHT = Integrator(method="scipy_dop853", rtol=1e-9, atol=1e-11)
 
 
 def all_modes(structure: Structure) -> IntrinsicModel:
