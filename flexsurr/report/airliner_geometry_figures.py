@@ -1,5 +1,7 @@
 """The airliner: its panels in three dimensions, and where its mass is (Figs. 16 and 17 of the study)."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
@@ -7,8 +9,6 @@ from matplotlib.lines import Line2D
 from mpl_toolkits.mplot3d import Axes3D
 from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
-from flexsurr.aerodynamics.lattice import Lattice
-from flexsurr.flight import FreeModes, StickModel
 from flexsurr.report.style import (
     BLACK,
     BLUE,
@@ -19,10 +19,14 @@ from flexsurr.report.style import (
     PURPLE,
     SKY,
     VERMILION,
+    Array,
     new_figure,
     styled,
 )
-from flexsurr.simulation.rhs import Array
+
+if TYPE_CHECKING:  # they bring along a compiler, which takes half a second
+    from flexsurr.aerodynamics.lattice import Lattice
+    from flexsurr.flight import FreeModes, StickModel
 
 _VIEW = {"elev": 24.0, "azim": 225.0}
 _CONTROLS = {"elevator": ORANGE, "aileron": VERMILION, "rudder": PURPLE}
@@ -41,7 +45,7 @@ PARTS: dict[str, str] = {
 
 
 @styled
-def figure_16(modes: FreeModes, lattice: Lattice) -> Figure:
+def figure_16(modes: "FreeModes", lattice: "Lattice") -> Figure:
     """The panels of wing and tails, control surfaces in colour, with the fuselage as a body of revolution."""
     figure = new_figure(PAGE_IN, 4.4)
     ax = _axes(figure)
@@ -70,7 +74,7 @@ def figure_16(modes: FreeModes, lattice: Lattice) -> Figure:
 
 
 @styled
-def figure_17(modes: FreeModes) -> Figure:
+def figure_17(modes: "FreeModes") -> Figure:
     """Every lumped mass where it is, its area in proportion, over the beams; and the parts' sum."""
     model, centre_of_gravity = modes.model, modes.properties.centre_of_gravity
     figure = new_figure(PAGE_IN, 5.9)
@@ -116,7 +120,7 @@ def figure_17(modes: FreeModes) -> Figure:
 
 
 @styled
-def elastic_modes(modes: FreeModes, elastic: pd.DataFrame, largest_m: float = 2.5) -> Figure:
+def elastic_modes(modes: "FreeModes", elastic: pd.DataFrame, largest_m: float = 2.5) -> Figure:
     """Elastic modes, each scaled to the same largest displacement, with what they are and the paper's number.
 
     `elastic`: `flexsurr.evaluation.airliner_modes.elastic_modes`, a row a mode that is shown.
@@ -142,7 +146,7 @@ def elastic_modes(modes: FreeModes, elastic: pd.DataFrame, largest_m: float = 2.
     return figure
 
 
-def _fuselage(model: StickModel) -> Array:
+def _fuselage(model: "StickModel") -> Array:
     """Quadrilaterals (k, 4, 3) of a body of revolution, pointed at both ends."""
     aircraft = model.aircraft
     length, radius = aircraft.published.fuselage_length_m, 0.5 * aircraft.fuselage.diameter_m

@@ -7,8 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, FancyArrowPatch, FancyBboxPatch
 
-from flexsurr.report.style import BLACK, new_figure
-from flexsurr.simulation.rhs import Array
+from flexsurr.report.style import BLACK, Array, new_figure
 
 Point = tuple[float, float]
 

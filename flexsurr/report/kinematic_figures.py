@@ -7,11 +7,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Circle, Polygon, Rectangle
 
-from flexsurr.beam import element_frames, node_positions
 from flexsurr.config.structure import Structure
 from flexsurr.report.diagram import arrow, canvas, pair
-from flexsurr.report.style import BLACK, BLUE, GREY, PAGE_IN, VERMILION, styled
-from flexsurr.simulation.rhs import Array
+from flexsurr.report.style import BLACK, BLUE, GREY, PAGE_IN, VERMILION, Array, styled
 
 DRAWN_ELEMENTS = 5
 """Few enough to see each; the models have as many as their configuration says."""
@@ -28,6 +26,8 @@ POSITION = "#9B4F86"
 @styled
 def figure_03(structure: Structure) -> Figure:
     """Discretisation, in the plane of bending: rigid elements, springs at their roots, lumped masses."""
+    from flexsurr.beam import element_frames, node_positions  # here, for it takes half a second
+
     # a schematic: every length in it is a share of the span
     beam = _few_elements(structure, ("out_of_plane",)).model_copy(update={"length_m": 1.0})
     q = np.deg2rad([9.0, 11.0, 12.0, 11.0, 9.0])
@@ -104,6 +104,8 @@ def figure_04(structure: Structure) -> Figure:
 
     Joints of the kinds that the structure has are turned: one without torsion is not twisted.
     """
+    from flexsurr.beam import element_frames, node_positions  # here, for it takes half a second
+
     joints = tuple(joint for joint in structure.ordered_joints if joint in TURNED_DEG)
     beam = _few_elements(structure, joints or ("out_of_plane",)).model_copy(update={"length_m": 1.0})
     q = np.deg2rad(np.repeat([TURNED_DEG[joint] if joints else 0.0 for joint in beam.joints], DRAWN_ELEMENTS))

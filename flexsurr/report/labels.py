@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
-from flexsurr.simulation.rhs import Array
+from flexsurr.report.style import Array
 
 Point = tuple[float, float]
 

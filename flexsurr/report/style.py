@@ -8,6 +8,7 @@ from typing import Any, ParamSpec
 from zlib import crc32
 
 import matplotlib
+import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -15,11 +16,14 @@ from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
+from numpy.typing import NDArray
 
 from flexsurr.config.own_network import own_network
 from flexsurr.storage import replacing
 
 Inputs = ParamSpec("Inputs")
+Array = NDArray[np.float64]
+"""That of `simulation.rhs`, which brings along a compiler that takes half a second."""
 
 COLUMN_IN = 3.5
 PAGE_IN = 7.2
