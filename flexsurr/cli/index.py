@@ -14,7 +14,8 @@ FOR_RULES = {
     "trajectories": ("simulate", "shards"),
     "samples": ("sample", "sample-shards"),
     "training": ("train", "train-map"),
-    "scoring": ("score", "score-map", "select"),
+    "scoring": ("score", "score-map"),
+    "selection": ("select",),
     "trials": ("trials", "map-trials"),
     "evaluation": (
         "statics",

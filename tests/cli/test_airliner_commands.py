@@ -10,7 +10,8 @@ import pytest
 from flexsurr.aerodynamics.features import COEFFICIENTS
 from flexsurr.cli.flight import accuracy, fly, fly_randomly, fly_references
 from flexsurr.cli.samples import sample
-from flexsurr.cli.scoring import score_map, select
+from flexsurr.cli.scoring import score_map
+from flexsurr.cli.selection import select
 from flexsurr.cli.tracking import store
 from flexsurr.cli.training import train_map
 from flexsurr.config.flight import DoubletTimes
