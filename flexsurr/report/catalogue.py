@@ -118,7 +118,7 @@ FIGURES: dict[str, Product] = {
     "trials": Product("Trials: settings against error", ("sweeps", "metrics"), sources=EVERY_SOURCE),
     "pareto": Product(
         "Cost against error of every trial",
-        ("selection", "metrics", "lattice_operations"),
+        ("selection", "lattice_operations", "metrics"),
         sources=EVERY_SOURCE,
     ),
     "figure_16": Product("The airliner and its panels", ("free_modes", "lattice"), sources=SAMPLES),

@@ -84,7 +84,7 @@ class _Rule:
 
 @styled
 def pareto(
-    selection: Mapping[str, Any], metrics: pd.DataFrame, lattice_operations: Mapping[str, int] | None = None
+    selection: Mapping[str, Any], lattice_operations: Mapping[str, int] | None, metrics: pd.DataFrame
 ) -> Figure:
     """The operations of one evaluation of every trial against its error, and which is chosen.
 

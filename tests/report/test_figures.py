@@ -311,7 +311,7 @@ def test_without_a_limit_the_most_accurate_is_chosen(metrics):
     costly = metrics.assign(
         operations=metrics["operations"].where(metrics["architecture"] != "polynomial", 999)
     )
-    figure = DRAW["pareto"]({"error_at_most_percent": None}, costly)
+    figure = DRAW["pareto"]({"error_at_most_percent": None}, None, costly)
     (ring,) = [line for line in figure.axes[0].lines if line.get_markersize() == 9]
     assert ring.get_ydata().tolist() == [1e-3]
 
@@ -321,7 +321,7 @@ def test_maps_are_shown_by_their_validation(metrics):
         columns=["long_response_error_percent_worst", "diverged", "rom_operations", "fom_operations"]
     )
     lattice = {"vlm_rebuild": 45_000_000, "vlm_frozen": 3_000_000}
-    figure = DRAW["pareto"]({"nmse_at_most": 1e-5}, maps, lattice)
+    figure = DRAW["pareto"]({"nmse_at_most": 1e-5}, lattice, maps)
     (ax,) = figure.axes
     assert ax.get_ylabel() == "validation nmse [–]"
     assert {*lattice.values()} <= {line.get_xdata()[0] for line in ax.lines}
@@ -342,7 +342,7 @@ def test_polynomials_and_networks_have_markers_of_their_own_and_no_two_labels_ar
     network = polynomials.assign(
         run_id="network", operations=60, degree=None, hidden="8", mass_matrix="entries", optimiser="lbfgs"
     )
-    figure = DRAW["pareto"]({}, pd.concat([polynomials, again, sparse, network]))
+    figure = DRAW["pareto"]({}, None, pd.concat([polynomials, again, sparse, network]))
     markers = [line.get_marker() for line in figure.axes[0].lines]
     assert {"s", "o"} <= {*markers}
     words = [text.get_text() for text in figure.axes[0].texts]
@@ -355,5 +355,5 @@ def test_polynomials_and_networks_have_markers_of_their_own_and_no_two_labels_ar
 
 
 def test_a_study_without_a_finished_run_is_drawn(metrics):
-    figure = DRAW["pareto"]({}, metrics.assign(status="failed"))
+    figure = DRAW["pareto"]({}, None, metrics.assign(status="failed"))
     assert len(figure.axes) == 2
