@@ -100,9 +100,10 @@ def of_structure(name: str, elements: int) -> None:
 
     runs = {label: lambda model=model: simulated(model) for label, model in models.items()}
     work, parts = f"30 s of the {name}, N = {elements}", {k: error / 100.0 for k, error in errors.items()}
-    timings = compare(work, runs, REPEATS, counts=IN_A_TURN, errors=parts)
     costs = {label: operations(model, start) for label, model in models.items()}
     marks = chosen(name, errors, costs, study.selection.error_at_most_percent)
+    more = {label: {"operations": cost, "mark": marks.get(label)} for label, cost in costs.items()}
+    timings = compare(work, runs, REPEATS, counts=IN_A_TURN, errors=parts, more=more)
     print(f"\n{name}, N = {elements}, {integrator.label}")
     print(f"{'':<32}{'operations':>12}{'30 s':>18}{'times faster':>20}{'worst tip error %':>20}")
     for label, timing in timings.items():

@@ -3,10 +3,12 @@
     python benchmarks/counted.py
 
 Counts do not depend on what else the machine does. Operations are those of the source
-(`flexsurr.evaluation.operations`). Instructions are counted one by one: a child process calls compiled code
-under ptrace, a step at a time; what lies in memory that belongs to no file is the code of numba; where
-objdump is there, floating-point operations are told apart. Linux on x86-64 alone. Hardware counters, which
-virtual machines often lack, are not needed.
+(`flexsurr.evaluation.operations`), the same everywhere: the floor, at one an instruction, which only vectors
+and fused products go below. Instructions depend on LLVM and on the processor's vectors. They are counted one
+by one: a child process calls compiled code under ptrace, a step at a time; what lies in memory that belongs
+to no file is the code of numba; where objdump is there, arithmetic, moves, and the rest (whole numbers,
+addresses, branches, calls) are told apart. Linux on x86-64 alone. Hardware counters, which virtual machines
+often lack, are not needed.
 """
 
 import ctypes
@@ -41,6 +43,8 @@ TRACE_ME, PEEK_USER, SINGLE_STEP = 0, 3, 9
 RIP = 16 * 8  # <sys/user.h>: the place of the instruction pointer among the registers
 LANES = {"x": 2, "y": 4, "z": 8}
 """Doubles in a register xmm, ymm or zmm."""
+MOVES = re.compile(r"^v?mov|^v?p?broadcast|^v(?:extract|insert|shuf|perm|unpck|gather)")
+"""From and to memory and between registers."""
 ARITHMETIC = re.compile(r"^v?(?:add|sub|mul|div|sqrt)([ps])d$|^v?fn?m(?:add|sub)\d*([ps])d$")
 
 ptrace = ctypes.CDLL(None, use_errno=True).ptrace
@@ -96,11 +100,14 @@ def one_call(kernel, x, work) -> Counter:
     return Counter(found)
 
 
-def floating_point(found: Counter) -> float | None:
-    """The floating-point operations that these instructions do, by the registers that they fill."""
+def told_apart(found: Counter) -> dict[str, float]:
+    """What these instructions are, and what floating-point operations they do, by the registers they fill.
+
+    Nothing where objdump is not there.
+    """
     if not shutil.which("objdump"):
-        return None
-    total = 0.0
+        return {}
+    of = dict.fromkeys(("executed_operations", "of_arithmetic", "of_moves"), 0.0)
     for at, times in found.items():
         mnemonic, operands = disassembled(at)
         match = ARITHMETIC.match(mnemonic)
@@ -108,8 +115,11 @@ def floating_point(found: Counter) -> float | None:
             register = re.findall(r"%([xyz])mm", operands)
             packed = "p" in match.groups()
             fused = 2 if match.group(2) else 1
-            total += times * fused * (LANES[register[-1]] if packed else 1)
-    return total
+            of["executed_operations"] += times * fused * (LANES[register[-1]] if packed else 1)
+            of["of_arithmetic"] += times
+        elif MOVES.match(mnemonic):
+            of["of_moves"] += times
+    return of
 
 
 def disassembled(at: int) -> tuple[str, str]:
@@ -159,19 +169,21 @@ def main() -> int:
         print("left out: instructions are counted on Linux and x86-64 alone")
         return MISSING
     chosen = models()
-    calls = {}
+    calls, counts = {}, {}
     for name, (model, x) in chosen.items():
         values = model.kernel, 0.0, x.copy(), np.empty_like(x), np.empty(model.work_size), TIMED
         calls[name] = lambda values=values: call_repeatedly(*values)
-    timings = compare("one right-hand side, and what it takes", calls, repeats=20, counts=TIMED)
-    print(f"{'':<30}{'operations':>12}{'executed':>12}{'instructions':>14}{'ns':>8}{'a ns':>8}")
-    for name, (model, x) in chosen.items():
         found = one_call(model.kernel, x, np.empty(model.work_size))
-        executed = floating_point(found)
-        taken, ns = operations(model, x), 1e9 * timings[name].lowest_s
-        shown = f"{executed:>12.0f}" if executed is not None else f"{'–':>12}"
-        count = sum(found.values())
-        print(f"{name:<30}{taken:>12}{shown}{count:>14.0f}{ns:>8.0f}{count / ns:>8.1f}", flush=True)
+        floor, taken = operations(model, x), sum(found.values())
+        counts[name] = {"operations": floor, "instructions": taken, "over_floor": taken / floor}
+        counts[name] |= told_apart(found)
+    what = "one right-hand side, and what it takes"
+    timings = compare(what, calls, repeats=20, counts=TIMED, more=counts)
+    columns = list(next(iter(counts.values())))
+    print(f"{'':<30}" + "".join(f"{column:>21}" for column in columns) + f"{'ns':>8}")
+    for name, of in counts.items():
+        cells = "".join(f"{of[column]:>21.4g}" for column in columns)
+        print(f"{name:<30}{cells}{1e9 * timings[name].median_s:>8.0f}", flush=True)
     return 0
 
 

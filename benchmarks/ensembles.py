@@ -18,7 +18,7 @@ from wing import FRESH, basis, starts, wing_model
 
 from flexsurr.config.study import InitialConditions, Integrator
 from flexsurr.config.trial import trial_of
-from flexsurr.simulation import simulate_ensemble
+from flexsurr.simulation import simulate, simulate_ensemble
 from flexsurr.surrogates import compiled
 from flexsurr.training import fit
 from flexsurr.training.configuration_samples import configuration_samples
@@ -37,8 +37,8 @@ TRIALS = {
     "even HNN, 8 neurons": trial_of(architecture="even_hnn", hidden=(8,), **NETWORK),
     "HNN, 16 neurons": trial_of(architecture="hnn", hidden=(16,), **NETWORK),
 }
-
-
+ONE_BY_ONE = "polynomial H, degree 6"
+"""Whose responses are also simulated in a call each."""
 CORES = len(os.sched_getaffinity(0))
 OF_WING, CONFIGURATIONS = 1_000, 1_000
 STIFF = Integrator(method="radau_iia_5", rtol=1e-3, atol=1e-6)
@@ -74,11 +74,18 @@ def cantilever() -> None:
                 return simulate_ensemble(model, ENDS, starts, integrator, observe=last, threads=threads)
 
             found = run(CORES).kept[:CHECKED]
-            error = (np.abs(found - exact) / np.abs(exact).max(axis=0)).max()
+            error = float((np.abs(found - exact) / np.abs(exact).max(axis=0)).max())
             seen = simulate_ensemble(model, SEEN, starts[:CHECKED], integrator).kept
-            of_tip = (np.linalg.norm(reference.tip(seen) - tips, axis=-1).max(axis=1) / peaks).max()
+            of_tip = float((np.linalg.norm(reference.tip(seen) - tips, axis=-1).max(axis=1) / peaks).max())
             runs = {f"threads: {n}": lambda n=n: run(n) for n in (1, CORES)}
-            walls = compare(f"{RESPONSES} responses of {name}, step {step_s} s", runs, repeats=5, warmup=1)
+            work = f"{RESPONSES} responses of {name}, step {step_s} s"
+            if name == ONE_BY_ONE and step_s == STEPS_S[0]:
+                runs["one by one"] = lambda model=model, i=integrator: [
+                    simulate(model, ENDS, x0, i) for x0 in starts
+                ]
+            errors = dict.fromkeys(runs, of_tip)
+            more = {case: {"error_of_steps": error} for case in runs}
+            walls = compare(work, runs, repeats=5, warmup=1, errors=errors, more=more)
             print(f"{name:<26}{step_s:>8}{shown(walls)}{error:>10.0e}{100 * of_tip:>14.2g}", flush=True)
 
 

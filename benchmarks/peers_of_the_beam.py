@@ -1,25 +1,32 @@
-"""The full-order cantilever's free response, against two multibody codes: Exudyn and MuJoCo.
+"""Full-order free responses of the cantilever and of the damped wing, against Exudyn and MuJoCo.
 
-    python benchmarks/peers_of_the_beam.py        # needs: pip install exudyn mujoco
+    python benchmarks/peers_of_the_beam.py [--seconds 30]   # needs: pip install exudyn mujoco
 
-All three integrate the same chain: ten elements in a plane, a point mass at the middle of each, a spring at
-each joint. The response starts at rest in the shape of the first mode. A code's error is the largest distance
-of its tip from that of a far finer solution, over the peak of the tip's motion. Each code runs with several
-steps or tolerances; what is compared is the time at one error, read off the line between the two
-runs around it, both logarithmic. An explicit method that follows at all may be better than that at once.
+All three integrate the same chains. The cantilever: ten elements in a plane, a point mass at the middle of
+each, a spring at each joint. The wing: sixteen elements that bend and twist, masses beside the axis, rotary
+inertia, springs and dampers; the inertia is exact, since no multibody code has the study's constant one. A
+response starts at rest in the shape of the first mode. A code's error is the largest distance of its tip from
+that of a far finer solution, over the peak of the tip's motion. Each code runs with several steps or
+tolerances, as long and as short as it follows, so that they can be compared at equal errors.
+
+Exudyn steps by its generalised α method without damping of its own. MuJoCo's RK4 is explicit: it follows the
+cantilever with short steps; the wing's dampers are too stiff for it, and are stepped by the implicit method,
+of first order.
 """
 
-import itertools
+import argparse
 import sys
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 import yaml
 from cantilever import STRUCTURE
 from timing import compare
+from wing import STRUCTURE as WING
 
 from flexsurr.beam import chain, full_order, node_positions, reduce
-from flexsurr.config.structure import Structure
+from flexsurr.config.structure import JOINTS, Structure
 from flexsurr.config.study import Integrator, Reduction
 from flexsurr.simulation import simulate
 
@@ -31,49 +38,81 @@ except ImportError as error:
     print(f"left out: {error}")
     sys.exit(3)
 
-
-DURATION_S, OUTPUT_STEP_S = 5.0, 0.01
-AMPLITUDE = 0.1  # of the first mode, of unit norm [rad]: the tip moves by a fifth of the span
-EQUAL_ERROR = 1e-4
-FOLLOWS = 0.1
-REPEATS = 3
-FINE = Integrator(method="radau_iia_5", rtol=1e-11, atol=1e-13)
-OURS = {
-    f"flexsurr, {method} rtol {rtol:g}": Integrator(method=method, rtol=rtol, atol=1e-2 * rtol)
-    for method in ("radau_iia_5", "dop853")
-    for rtol in (1e-3, 1e-5, 1e-7)
-}
-EXUDYN_STEPS_S = (2e-4, 1e-4, 5e-5, 2.5e-5)
-MUJOCO_STEPS_S = (2.5e-5, 2e-5, 1e-5)
+OUTPUT_STEP_S = 0.01
+REPEATS = 2
+FINE = Integrator(method="radau_iia_5", rtol=1e-10, atol=1e-12)
+SIGNS = {"in_plane": 1.0, "out_of_plane": -1.0, "torsion": 1.0}  # ours are about z, -y and x
+AXES = {"in_plane": "Z", "out_of_plane": "Y", "torsion": "X"}
 
 Tip = np.ndarray  # (times, 3) [m]
 
 
-def structure() -> Structure:
-    return Structure(**yaml.safe_load(STRUCTURE.read_text()))
+@dataclass(frozen=True)
+class Case:
+    """A response, and the steps and tolerances that each code is tried with."""
+
+    name: str
+    structure: Structure
+    amplitude: float  # of the first mode, of unit norm [rad]
+    tolerances: tuple[float, ...]
+    exudyn_steps_s: tuple[float, ...]
+    mujoco_steps_s: dict[str, tuple[float, ...]]  # by its integrator
+
+    @property
+    def start(self) -> np.ndarray:
+        """Joint angles (n,), at rest."""
+        return self.amplitude * reduce(self.structure, Reduction(modes=1)).modes[:, 0]
+
+    def tips(self, q: np.ndarray) -> Tip:
+        return node_positions(self.structure, q)[..., -1, :]
+
+    def joints(self) -> list[tuple[int, str, int]]:
+        """Element, joint and place in q, in the order in which the joints turn."""
+        beam = chain(self.structure)
+        kinds = [JOINTS[row // beam.elements] for row in beam.rows]
+        found = [
+            (int(row) % beam.elements, kind, k)
+            for k, (row, kind) in enumerate(zip(beam.rows, kinds, strict=True))
+        ]
+        return sorted(found, key=lambda joint: (joint[0], JOINTS.index(joint[1])))
 
 
-def times() -> np.ndarray:
-    return np.linspace(0.0, DURATION_S, round(DURATION_S / OUTPUT_STEP_S) + 1)
+CASES = (
+    Case(
+        name="full-order cantilever",
+        structure=Structure(**yaml.safe_load(STRUCTURE.read_text())),
+        amplitude=0.1,  # the tip moves by a fifth of the span
+        tolerances=(1e-3, 1e-4, 1e-5, 1e-6, 1e-7),
+        exudyn_steps_s=(1e-3, 2e-4, 1e-4, 5e-5),
+        mujoco_steps_s={"RK4": (5e-5, 2.5e-5, 1e-5)},
+    ),
+    Case(
+        name="full-order wing",
+        structure=WING.model_copy(update={"rotary_inertia": "exact"}),
+        amplitude=0.1,
+        tolerances=(1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7),
+        exudyn_steps_s=(1e-2, 5e-3, 2e-3, 1e-3),
+        mujoco_steps_s={"RK4": (1e-4, 1e-5), "implicit": (1e-2, 1e-3, 1e-4)},
+    ),
+)
 
 
-def tips(q: np.ndarray) -> Tip:
-    return node_positions(structure(), q)[..., -1, :]
+def times(seconds: float) -> np.ndarray:
+    return np.linspace(0.0, seconds, round(seconds / OUTPUT_STEP_S) + 1)
 
 
-def ours(integrator: Integrator, q0: np.ndarray) -> Callable[[], Tip]:
-    model = full_order(structure(), "hamiltonian", "compiled")
-    x0 = np.concatenate([q0, np.zeros_like(q0)])
-    return lambda: tips(simulate(model, times(), x0, integrator).x[:, : q0.size])
+def ours(case: Case, integrator: Integrator, t: np.ndarray) -> Callable[[], Tip]:
+    model = full_order(case.structure, "hamiltonian", "compiled")
+    x0 = np.concatenate([case.start, np.zeros_like(case.start)])
+    return lambda: case.tips(simulate(model, t, x0, integrator).x[:, : case.start.size])
 
 
-def in_exudyn(step_s: float, q0: np.ndarray) -> Callable[[], Tip]:
-    """A kinematic tree of revolute joints; its coordinates are the joint angles.
-
-    Its explicit methods follow this response with steps of 1e-5 s alone.
-    """
-    beam = chain(structure())
-    count = beam.elements
+def in_exudyn(case: Case, step_s: float, t: np.ndarray) -> Callable[[], Tip]:
+    """A kinematic tree of revolute joints, whose coordinates are the joint angles."""
+    beam, joints = chain(case.structure), case.joints()
+    places = [k for _, _, k in joints]
+    signs = np.array([SIGNS[kind] for _, kind, _ in joints])
+    count = len(joints)
 
     def run() -> Tip:
         container = exudyn.SystemContainer()
@@ -82,32 +121,36 @@ def in_exudyn(step_s: float, q0: np.ndarray) -> Callable[[], Tip]:
         node = system.AddNode(
             NodeGenericODE2(
                 referenceCoordinates=zeros,
-                initialCoordinates=list(q0),
+                initialCoordinates=list(signs * case.start[places]),
                 initialCoordinates_t=zeros,
                 numberOfODE2Coordinates=count,
             )
         )
         offsets, middles = exudyn.Vector3DList(), exudyn.Vector3DList()
         turns, inertias = exudyn.Matrix3DList(), exudyn.Matrix3DList()
-        for k in range(count):
-            offsets.Append([0.0 if k == 0 else beam.element_length, 0.0, 0.0])
-            middles.Append([0.5 * beam.element_length, 0.0, 0.0])
+        masses = []
+        for number, (element, _, _) in enumerate(joints):
+            first = number == 0 or joints[number - 1][0] != element
+            last = number == count - 1 or joints[number + 1][0] != element
+            offsets.Append(beam.spans[element - 1] if first and element else np.zeros(3))
+            middles.Append(beam.arms[element] if last else np.zeros(3))
             turns.Append(np.eye(3))
-            inertias.Append(np.zeros((3, 3)))
+            tensor = beam.tensors[element] if last and beam.tensors is not None else np.zeros((3, 3))
+            inertias.Append(tensor)
+            masses.append(beam.masses[element] if last else 0.0)
         system.AddObject(
             ObjectKinematicTree(
                 nodeNumber=node,
-                # ours lifts the tip where theirs turns about y: the plane is the same, seen from its back
-                jointTypes=[exudyn.JointType.RevoluteY] * count,
+                jointTypes=[getattr(exudyn.JointType, f"Revolute{AXES[kind]}") for _, kind, _ in joints],
                 linkParents=list(np.arange(count) - 1),
                 jointTransformations=turns,
                 jointOffsets=offsets,
                 linkInertiasCOM=inertias,
                 linkCOMs=middles,
-                linkMasses=list(beam.masses),
-                jointPControlVector=list(beam.stiffness),
+                linkMasses=masses,
+                jointPControlVector=list(beam.stiffness[places]),
                 jointPositionOffsetVector=zeros,
-                jointDControlVector=zeros,
+                jointDControlVector=list(beam.damping[places]),
                 jointVelocityOffsetVector=zeros,
             )
         )
@@ -120,33 +163,45 @@ def in_exudyn(step_s: float, q0: np.ndarray) -> Callable[[], Tip]:
         )
         system.Assemble()
         settings = exudyn.SimulationSettings()
-        settings.timeIntegration.endTime = DURATION_S
-        settings.timeIntegration.numberOfSteps = round(DURATION_S / step_s)
+        settings.timeIntegration.endTime = t[-1]
+        settings.timeIntegration.numberOfSteps = round(t[-1] / step_s)
         settings.timeIntegration.automaticStepSize = False
         settings.timeIntegration.verboseMode = 0
         settings.solution.file.write = False
         settings.solution.sensors.writePeriod = OUTPUT_STEP_S
         settings.timeIntegration.generalizedAlpha.spectralRadius = 1.0  # no damping of its own
         system.SolveDynamic(settings, solverType=exudyn.DynamicSolverType.GeneralizedAlpha)
-        return tips(system.GetSensorStoredData(sensor)[:, 1:])
+        angles = np.empty((len(t), count))
+        angles[:, places] = signs * system.GetSensorStoredData(sensor)[:, 1:]
+        return case.tips(angles)
 
     return run
 
 
-def in_mujoco(step_s: float, q0: np.ndarray) -> Callable[[], Tip]:
-    """Bodies with hinges, RK4."""
-    beam = chain(structure())
+def in_mujoco(case: Case, integrator: str, step_s: float, t: np.ndarray) -> Callable[[], Tip]:
+    """Bodies with hinges."""
+    beam, joints = chain(case.structure), case.joints()
+    places = [k for _, _, k in joints]
+    signs = np.array([SIGNS[kind] for _, kind, _ in joints])
     opened, closed = "", ""
-    for k in range(beam.elements):
-        root = 0.0 if k == 0 else beam.element_length
+    for element in range(beam.elements):
+        root = beam.spans[element - 1] if element else np.zeros(3)
+        opened += f'<body pos="{_numbers(root)}">'
+        for _, kind, k in (joint for joint in joints if joint[0] == element):
+            axis = np.array([AXES[kind] == name for name in "XYZ"], float)
+            opened += (
+                f'<joint type="hinge" axis="{_numbers(axis)}" stiffness="{beam.stiffness[k]:.17g}"'
+                f' damping="{beam.damping[k]:.17g}"/>'
+            )
+        # a body has to have some inertia
+        inertia = np.diag(beam.tensors[element]) if beam.tensors is not None else np.zeros(3)
         opened += (
-            f'<body pos="{root} 0 0"><joint type="hinge" axis="0 1 0" stiffness="{beam.stiffness[k]:.17g}"/>'
-            f'<inertial pos="{0.5 * beam.element_length} 0 0" mass="{beam.masses[k]:.17g}"'
-            f' diaginertia="1e-12 1e-12 1e-12"/>'
+            f'<inertial pos="{_numbers(beam.arms[element])}" mass="{beam.masses[element]:.17g}"'
+            f' diaginertia="{_numbers(np.maximum(inertia, 1e-12))}"/>'
         )
         closed += "</body>"
     text = (
-        f'<mujoco><option timestep="{step_s!r}" integrator="RK4" gravity="0 0 0">'
+        f'<mujoco><option timestep="{step_s!r}" integrator="{integrator}" gravity="0 0 0">'
         f'<flag contact="disable" constraint="disable"/></option>'
         f"<worldbody>{opened}{closed}</worldbody></mujoco>"
     )
@@ -154,53 +209,59 @@ def in_mujoco(step_s: float, q0: np.ndarray) -> Callable[[], Tip]:
 
     def run() -> Tip:
         data = mujoco.MjData(model)
-        data.qpos[:] = q0
-        angles = [q0.copy()]
-        for _ in times()[1:]:
+        data.qpos[:] = signs * case.start[places]
+        angles = np.empty((len(t), len(joints)))
+        angles[0, places] = signs * data.qpos
+        for row in angles[1:]:
             mujoco.mj_step(model, data, nstep=round(OUTPUT_STEP_S / step_s))
-            angles.append(data.qpos.copy())
-        return tips(np.array(angles))
+            row[places] = signs * data.qpos
+            if any(warning.number for warning in data.warning):  # it starts anew where it diverges
+                return np.full((len(t), 3), np.inf)
+        return case.tips(angles)
 
     return run
 
 
-def time_at(error: float, runs: list[tuple[float, float]]) -> float | None:
-    """Seconds at which a code reaches `error`, from its (seconds, error); None where no run does.
+def _numbers(values: np.ndarray) -> str:
+    return " ".join(f"{value:.17g}" for value in values)
 
-    Runs that do not follow the response at all, steps too long for an explicit method, do not count.
-    """
-    following = sorted(run for run in runs if run[1] < FOLLOWS)
-    if following and following[0][1] <= error:
-        return following[0][0]
-    for (fast, coarse), (slow, fine) in itertools.pairwise(following):
-        if fine <= error <= coarse:
-            share = np.log(coarse / error) / np.log(coarse / fine)
-            return float(np.exp(np.log(fast) + share * np.log(slow / fast)))
-    return None
+
+def against(case: Case, seconds: float) -> None:
+    t = times(seconds)
+    exact = ours(case, FINE, t)()
+    peak = np.max(np.linalg.norm(exact - case.tips(np.zeros_like(case.start)), axis=1))
+    runs = {
+        f"flexsurr, radau_iia_5 rtol {rtol:g}": ours(
+            case, Integrator(method="radau_iia_5", rtol=rtol, atol=1e-2 * rtol), t
+        )
+        for rtol in case.tolerances
+    }
+    runs |= {f"Exudyn, generalised α step {h:g} s": in_exudyn(case, h, t) for h in case.exudyn_steps_s}
+    for method, steps_s in case.mujoco_steps_s.items():
+        runs |= {f"MuJoCo, {method} step {h:g} s": in_mujoco(case, method, h, t) for h in steps_s}
+    errors: dict[str, float] = {}
+
+    def noted(name: str, run: Callable[[], Tip]) -> Callable[[], None]:
+        def call() -> None:
+            error = np.max(np.linalg.norm(run() - exact, axis=1)) / peak
+            errors[name] = float(error) if np.isfinite(error) else np.inf
+
+        return call
+
+    calls = {name: noted(name, run) for name, run in runs.items()}
+    timings = compare(f"{seconds:g} s of the {case.name}", calls, REPEATS, warmup=0, errors=errors)
+    print(f"{case.name}, {seconds:g} s; the tip moves by {peak:.3g} m\n{'':<44}{'s':>10}{'error / peak':>14}")
+    for name, timing in timings.items():
+        print(f"{name:<44}{timing.median_s:>10.4f}{errors[name]:>14.1e}", flush=True)
 
 
 def main() -> None:
-    basis = reduce(structure(), Reduction(modes=1))
-    q0 = AMPLITUDE * basis.modes[:, 0]
-    exact = ours(FINE, q0)()
-    peak = np.max(np.linalg.norm(exact - tips(np.zeros_like(q0)), axis=1))
-    runs = {name: ours(integrator, q0) for name, integrator in OURS.items()}
-    runs |= {f"Exudyn, generalised α step {step:g} s": in_exudyn(step, q0) for step in EXUDYN_STEPS_S}
-    runs |= {f"MuJoCo, RK4 step {step:g} s": in_mujoco(step, q0) for step in MUJOCO_STEPS_S}
-    errors = {name: np.max(np.linalg.norm(run() - exact, axis=1)) / peak for name, run in runs.items()}
-    work = f"{DURATION_S:g} s of the full-order cantilever"
-    timings = compare(work, runs, REPEATS, warmup=0, errors=errors)
-    found: dict[str, list[tuple[float, float]]] = {}
-    print(f"{'':<40}{'s':>10}{'error / peak':>14}")
-    for name, timing in timings.items():
-        error = errors[name]
-        method = name.rsplit(" ", 2 if name.startswith("flexsurr") else 3)[0]
-        found.setdefault(method, []).append((timing.median_s, error))
-        print(f"{name:<40}{timing.median_s:>10.4f}{error:>14.1e}", flush=True)
-    print(f"\nat an error of {EQUAL_ERROR:g}:")
-    for method, pairs in found.items():
-        seconds = time_at(EQUAL_ERROR, pairs)
-        print(f"{method:<40}" + ("     no run around it" if seconds is None else f"{seconds:>10.4f} s"))
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--seconds", type=float, default=30.0)
+    seconds = parser.parse_args().seconds
+    mujoco.set_mju_user_warning(lambda _: None)  # of runs that diverge, which their errors say
+    for case in CASES:
+        against(case, seconds)
 
 
 if __name__ == "__main__":

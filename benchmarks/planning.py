@@ -17,6 +17,7 @@ import time
 from pathlib import Path
 
 import yaml
+from timing import record
 
 PROJECT = Path(__file__).resolve().parents[1]
 PARTS = ("Snakefile", "workflow", "profiles", "config", "examples")
@@ -87,14 +88,21 @@ def main() -> None:
     else:
         cases = [(count, 4, UNSAID) for count in (100, 1_000, 10_000)]
         cases += [(count, 4, JOB_EACH) for count in (100, 1_000)]
+    seconds: dict[tuple[int, int], dict[str, float | None]] = {}
+    more: dict[tuple[int, int], dict[str, dict[str, float | None]]] = {}
     print("trials  shards  batches    jobs  wall s  processor s      MB")
     for trials, shards, batches in cases:
         with tempfile.TemporaryDirectory() as folder:
             prepare(Path(folder), trials, shards, batches)
             wall_s, processor_s, memory, jobs = plan(Path(folder))
         batched = "no" if batches is JOB_EACH else "yes"
+        case, size = "in batches" if batches is UNSAID else "a job each", (trials, shards)
+        seconds.setdefault(size, {})[case] = wall_s
+        more.setdefault(size, {})[case] = {"processor_s": processor_s, "held_MB": memory, "jobs": jobs}
         costs = f"{wall_s:>7.1f} {processor_s:>12.1f} {memory:>7.0f}"
         print(f"{trials:>6} {shards:>7} {batched:>8} {jobs:>7} {costs}", flush=True)
+    for (trials, shards), taken in seconds.items():
+        record(f"plan of {trials} trials on {shards} shards", taken, more=more[trials, shards])
 
 
 if __name__ == "__main__":

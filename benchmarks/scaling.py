@@ -3,23 +3,27 @@
     python benchmarks/scaling.py
 
 Each table ends with the exponent of a power law that is fitted to its last three rows, least squares of the
-logarithms: what a further doubling will cost.
+logarithms: what a further doubling will cost. Surrogates of the cantilever are fitted anew to each number of
+elements, without a simulation.
 """
 
 import logging
 import resource
 import tempfile
 import time
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
 import yaml
-from beam_right_hand_sides import COMPILED, COMPILED_CALLS, DESCRIBED, NUMPY, caller
+from beam_right_hand_sides import COMPILED, COMPILED_CALLS, KINDS, caller
 from cantilever import STRUCTURE, cantilever_dataset
-from timing import compare
+from chosen import study_of
+from timing import More, compare, record
 from wing import STRUCTURE as WING
 
 from flexsurr.beam import full_order, reduce, reduced_order
+from flexsurr.beam.projection import Projection
 from flexsurr.cli.trajectories import simulate as simulate_shard
 from flexsurr.config.settings import load
 from flexsurr.config.structure import Structure
@@ -35,6 +39,7 @@ from flexsurr.surrogates import (
 from flexsurr.surrogates.monomials import monomials_to_degree
 from flexsurr.surrogates.packed import pack, packed_size
 from flexsurr.training import fit
+from flexsurr.training.configuration_samples import configuration_samples
 from flexsurr.workflow.plan import Plan
 
 ELEMENTS = (10, 20, 40, 80, 160, 320)
@@ -43,31 +48,36 @@ WIDTHS = (8, 16, 32, 64)
 SHARES = (0.125, 0.25, 0.5, 1.0)
 TRAJECTORIES = (100, 10_000, 1_000_000)
 IN_A_SHARD = 10_000
+CONFIGURATIONS = 500
 WIDTH = 64
 """Neurons of the network of several modes."""
 REPEATS = 5
-DESCRIBED_TO = 80
-"""Elements up to which the described model is timed: 320 of them take half a second a call."""
+OF_CANTILEVER = {
+    "polynomial, degree 6": {"architecture": "polynomial", "degree": 6, "optimiser": "least_squares"},
+    "HNN, 16": {"architecture": "hnn", "hidden": (16,), "activation": "half_log", "epochs": 60},
+}
 
 
-def exponents(sizes: list[float], costs: dict[str, list[float]]) -> dict[str, float]:
-    """Of each column, from its last three rows."""
-    found = {}
-    for name, values in costs.items():
-        known = [(size, value) for size, value in zip(sizes, values, strict=True) if np.isfinite(value)][-3:]
-        found[name] = float(np.polyfit(*np.log(np.array(known)).T, 1)[0])
-    return found
+def exponent(sizes: list[float], costs: list[float]) -> float:
+    """From the last three."""
+    return float(np.polyfit(np.log(sizes[-3:]), np.log(costs[-3:]), 1)[0])
 
 
-def show(what: str, size: str, rows: dict[float, dict[str, float]], unit: str) -> None:
-    """A table of costs against sizes, and the exponents under it."""
+def show(what: str, against: str, rows: dict[float, dict[str, float]], unit: str) -> None:
+    """A table of costs against sizes, and under it the exponents, which are kept."""
     names = list(next(iter(rows.values())))
-    print(f"\n{what} [{unit}]\n{size:>12}" + "".join(f"{name:>24}" for name in names))
+    print(f"\n{what} [{unit}]\n{against:>12}" + "".join(f"{name:>24}" for name in names))
     for number, costs in rows.items():
-        print(f"{number:>12g}" + "".join(f"{costs.get(name, np.nan):>24.4g}" for name in names))
-    columns = {name: [costs.get(name, np.nan) for costs in rows.values()] for name in names}
-    powers = exponents(list(rows), columns)
+        print(f"{number:>12g}" + "".join(f"{costs[name]:>24.4g}" for name in names))
+    powers = {name: exponent(list(rows), [costs[name] for costs in rows.values()]) for name in names}
     print(f"{'exponent':>12}" + "".join(f"{powers[name]:>24.2f}" for name in names), flush=True)
+    more = {name: {"against": against, "exponent": power} for name, power in powers.items()}
+    record(f"{what}: growth with {against}", dict.fromkeys(names), more=more)
+
+
+def sized(what: str, against: str, size: float, names: Iterable[str]) -> tuple[str, More]:
+    """What a row of one size says."""
+    return f"{what}, {against}: {size:g}", {name: {"against": against, "size": size} for name in names}
 
 
 def against_elements() -> None:
@@ -76,16 +86,28 @@ def against_elements() -> None:
     for elements in ELEMENTS:
         structure = cantilever.model_copy(update={"elements": elements})
         basis = reduce(structure, Reduction(modes=1))
-        kinds = (COMPILED, NUMPY, DESCRIBED) if elements <= DESCRIBED_TO else (COMPILED, NUMPY)
         callers = {
-            f"reduced, {kind}": caller(reduced_order(basis, "hamiltonian", kind), kind) for kind in kinds
+            f"reduced, {kind}": caller(reduced_order(basis, "hamiltonian", kind), kind) for kind in KINDS
         }
         callers["full order, compiled"] = caller(full_order(structure, "hamiltonian", COMPILED), COMPILED)
-        compiled = dict.fromkeys((f"reduced, {COMPILED}", "full order, compiled"), COMPILED_CALLS)
-        timings = compare(f"right-hand side, N = {elements}", callers, REPEATS, counts=compiled)
+        fitted = {name: caller(model, COMPILED) for name, model in surrogates_for(basis).items()}
+        counts = dict.fromkeys((f"reduced, {COMPILED}", "full order, compiled", *fitted), COMPILED_CALLS)
+        callers |= fitted
+        what, more = sized("right-hand side of the cantilever", "elements", elements, callers)
+        timings = compare(what, callers, REPEATS, counts=counts, more=more)
         rows[elements] = {name: 1e6 * timing.median_s for name, timing in timings.items()}
-    rows = {n: {name: rows[n].get(name, np.nan) for name in rows[ELEMENTS[0]]} for n in rows}
-    show("right-hand side of the cantilever, one mode", "elements", rows, "µs")
+    show("right-hand side of the cantilever", "elements", rows, "µs")
+
+
+def surrogates_for(basis: Projection) -> dict[str, CompiledSurrogate]:
+    """Surrogates of one mode of the cantilever with so many elements."""
+    study = study_of("cantilever", basis.structure.elements / ELEMENTS[0])
+    samples = configuration_samples(basis, "hamiltonian", study.dataset.initial_conditions, CONFIGURATIONS)
+    found = {}
+    for name, settings in OF_CANTILEVER.items():
+        with tempfile.TemporaryDirectory() as folder:
+            found[name] = compiled(fit(trial_of(**settings), samples, Path(folder)).surrogate)
+    return found
 
 
 def against_modes() -> None:
@@ -93,15 +115,15 @@ def against_modes() -> None:
     for modes in MODES:
         basis = reduce(WING, Reduction(modes=modes, normalisation="mass"))
         callers = {
-            f"reduced, {kind}": caller(reduced_order(basis, "hamiltonian", kind), kind)
-            for kind in (COMPILED, NUMPY)
+            f"reduced, {kind}": caller(reduced_order(basis, "hamiltonian", kind), kind) for kind in KINDS
         }
         surrogates = {name: caller(model, COMPILED) for name, model in surrogates_of(modes).items()}
         counts = dict.fromkeys((f"reduced, {COMPILED}", *surrogates), COMPILED_CALLS)
         callers |= surrogates
-        timings = compare(f"right-hand side, r = {modes}", callers, REPEATS, counts=counts)
+        what, more = sized("right-hand side of the wing", "modes", modes, callers)
+        timings = compare(what, callers, REPEATS, counts=counts, more=more)
         rows[modes] = {name: 1e6 * timing.median_s for name, timing in timings.items()}
-    show("right-hand side of the wing, 16 elements", "modes", rows, "µs")
+    show("right-hand side of the wing", "modes", rows, "µs")
 
 
 def surrogates_of(modes: int) -> dict[str, CompiledSurrogate]:
@@ -151,8 +173,11 @@ def training(size: str, sizes: dict[float, tuple[int, float]]) -> None:
         trial = trial_of(architecture="hnn", hidden=(width,), activation="half_log", epochs=60)
         with tempfile.TemporaryDirectory() as folder:
             result = fit(trial, part, folder)
-        samples = len(chosen)
-        rows[number if size == "weights" else samples] = {"one epoch": 1e3 * result.wall_s / result.epochs}
+        many = number if size == "weights" else len(chosen)
+        seconds = result.wall_s / result.epochs
+        what, more = sized("training of an HNN", size, many, ["one epoch"])
+        record(what, {"one epoch": seconds}, more=more)
+        rows[many] = {"one epoch": 1e3 * seconds}
     show("training of an HNN", size, rows, "ms")
 
 
@@ -175,7 +200,10 @@ def data() -> None:
         # the most that this process has ever held
         held = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
         rows[count] = {"seconds": seconds, "files": len(files), "MB of files": megabytes, "MB held": held}
-    show("a dataset of the cantilever", "trajectories", rows, "s; MB")
+        known = {"files": len(files), "files_MB": megabytes, "held_MB": held}
+        what, more = sized("dataset of the cantilever", "trajectories", count, ["one core"])
+        record(what, {"one core": seconds}, more={"one core": dict(more["one core"]) | known})
+    show("dataset of the cantilever", "trajectories", rows, "s; MB")
 
 
 def main() -> None:

@@ -3,13 +3,13 @@
 Where the environment names a file in `ROWS`, each timing is added to it as a row (`benchmarks/run.py`).
 """
 
-import csv
+import json
 import os
 import statistics
 import sys
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import astuple, dataclass, fields
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
 ROWS = "FLEXSURR_BENCHMARK_ROWS"
@@ -37,28 +37,31 @@ class Timing:
 
 @dataclass(frozen=True)
 class Row:
-    """One line of results/tables/benchmarks.csv, but for the machine: `peer` was timed in turns with `ours`.
+    """What every line of results/tables/benchmarks.csv begins with: `peer` was timed in turns with `ours`.
 
     `ours_s` and `peer_s` are medians, `ratio` is the median of those within a turn. Errors stand where the
-    benchmark knows them, and are relative to a peak.
+    benchmark knows them, and are relative to a peak. What was run once has no spread; what was not timed, or
+    did not get there, no seconds.
     """
 
     subject: str  # the benchmark
     work: str
     ours: str
-    ours_s: float
+    ours_s: float | None
     peer: str
-    peer_s: float
-    ratio: float
-    ratio_spread: float
+    peer_s: float | None
+    ratio: float | None
+    ratio_spread: float | None
     error_ours: float | None
     error_peer: float | None
-    peer_spread_s: float
-    peer_lowest_s: float
+    peer_spread_s: float | None
+    peer_lowest_s: float | None
     repeats: int
 
 
 COLUMNS = [field.name for field in fields(Row)]
+More = Mapping[str, Mapping[str, float | str | None]]
+"""Of each case what only its benchmark knows, by the name of its column."""
 
 
 def measure(
@@ -75,11 +78,13 @@ def compare(
     warmup: int = 2,
     counts: dict[str, int] | int = 1,
     errors: Mapping[str, float] | None = None,
+    more: More | None = None,
 ) -> dict[str, Timing]:
     """Time several calls in turns, each against the first.
 
     A call that does its work `counts` times over is reported by one of them. `errors` of the calls, as parts
-    of a peak, are kept beside their times. ValueError with fewer than two repeats, which have no spread.
+    of a peak, and what `more` is known are kept beside their times. ValueError with fewer than two repeats,
+    which have no spread.
     """
     if repeats < 2:
         raise ValueError("a spread needs at least two repeats")
@@ -93,8 +98,53 @@ def compare(
             seconds[name].append(_seconds(call) / count)
     first = next(iter(calls))
     timings = {name: _timing(values, seconds[first]) for name, values in seconds.items()}
-    _note(what, first, timings, errors or {})
+    errors, ours = errors or {}, timings[first]
+    for peer, timing in timings.items():
+        row = Row(
+            subject=_subject(),
+            work=what,
+            ours=first,
+            ours_s=ours.median_s,
+            peer=peer,
+            peer_s=timing.median_s,
+            ratio=timing.ratio,
+            ratio_spread=timing.ratio_spread,
+            error_ours=errors.get(first),
+            error_peer=errors.get(peer),
+            peer_spread_s=timing.spread_s,
+            peer_lowest_s=timing.lowest_s,
+            repeats=timing.repeats,
+        )
+        _add(row, (more or {}).get(peer, {}))
     return timings
+
+
+def record(
+    what: str,
+    seconds: Mapping[str, float | None],
+    errors: Mapping[str, float] | None = None,
+    more: More | None = None,
+) -> None:
+    """Keep what was run once, each case beside the first; None for what was not timed, or never got there."""
+    errors, first = errors or {}, next(iter(seconds))
+    ours = seconds[first]
+    for peer, taken in seconds.items():
+        row = Row(
+            subject=_subject(),
+            work=what,
+            ours=first,
+            ours_s=ours,
+            peer=peer,
+            peer_s=taken,
+            ratio=taken / ours if taken and ours else None,
+            ratio_spread=None,
+            error_ours=errors.get(first),
+            error_peer=errors.get(peer),
+            peer_spread_s=None,
+            peer_lowest_s=taken,
+            repeats=1,
+        )
+        _add(row, (more or {}).get(peer, {}))
 
 
 def _seconds(call: Callable[[], object]) -> float:
@@ -118,27 +168,12 @@ def _timing(seconds: list[float], first: list[float]) -> Timing:
     )
 
 
-def _note(work: str, ours: str, timings: dict[str, Timing], errors: Mapping[str, float]) -> None:
+def _subject() -> str:
+    return Path(sys.argv[0]).stem
+
+
+def _add(row: Row, more: Mapping[str, float | str | None]) -> None:
     path = os.environ.get(ROWS)
-    if not path:
-        return
-    rows = [
-        Row(
-            subject=Path(sys.argv[0]).stem,
-            work=work,
-            ours=ours,
-            ours_s=timings[ours].median_s,
-            peer=peer,
-            peer_s=timing.median_s,
-            ratio=timing.ratio,
-            ratio_spread=timing.ratio_spread,
-            error_ours=errors.get(ours),
-            error_peer=errors.get(peer),
-            peer_spread_s=timing.spread_s,
-            peer_lowest_s=timing.lowest_s,
-            repeats=timing.repeats,
-        )
-        for peer, timing in timings.items()
-    ]
-    with open(path, "a", newline="", encoding="utf-8") as file:
-        csv.writer(file).writerows(map(astuple, rows))
+    if path:
+        with open(path, "a", encoding="utf-8") as file:
+            file.write(json.dumps(asdict(row) | dict(more)) + "\n")

@@ -11,6 +11,7 @@ import tempfile
 import time
 
 import numpy as np
+from timing import record
 from wing import ACCURATE, FRESH, SEED, basis, starts, tip_errors, wing_model
 
 from flexsurr.config.study import InitialConditions
@@ -50,6 +51,9 @@ def main() -> None:
     responses = [simulate(reference, times, start, ACCURATE).x for start in starts(FRESH, RESPONSES)]
     print(f"configurations  {'surrogate':<30} parameters      s     nmse  tip error")
     for count in (500, 1000, 2000):
+        seconds: dict[str, float | None] = {}
+        errors: dict[str, float] = {}
+        more: dict[str, dict[str, float | None]] = {}
         for label, settings in TRIALS.items():
             start = time.process_time()
             samples = configuration_samples(basis(), "hamiltonian", InitialConditions(), count)
@@ -58,8 +62,11 @@ def main() -> None:
             cpu_s = time.process_time() - start
             error = nmse(found.derivative(0.0, x), dx)
             worst = max(tip_errors(compiled(found), reference, times, responses))
+            seconds[label], errors[label] = cpu_s, worst
+            more[label] = {"nmse": float(error), "parameters": found.parameter_count}
             row = f"{found.parameter_count:>10} {cpu_s:>6.2f} {error:>8.1e} {worst:>10.1e}"
             print(f"{count:>14}  {label:<30} {row}", flush=True)
+        record(f"the wing's surrogate from {count} configurations, sampling and fit", seconds, errors, more)
 
 
 if __name__ == "__main__":

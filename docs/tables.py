@@ -9,18 +9,21 @@ words around it stay. A table whose file the results do not hold is left as it i
 import math
 import re
 import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
+from speed_tables import TABLES as SPEED
+from table_cells import markdown, percent, rounded
 
 from flexsurr.report.crossover_figure import FAMILIES, cheapest
 from flexsurr.report.style import label
 from flexsurr.storage import replacing
 
 REPOSITORY = Path(__file__).parents[1]
-DOCUMENTS = ("README.md", *(f"docs/{name}.md" for name in ("measurements", "crossover", "flight", "speed")))
+DOCUMENTED = ("measurements", "crossover", "flight", "speed", "ensembles")
+DOCUMENTS = ("README.md", *(f"docs/{name}.md" for name in DOCUMENTED))
 MARKED = re.compile(r"(<!-- table: (?P<name>[^>]+?) -->\n).*?(\n<!-- end of table -->)", re.DOTALL)
 
 IMPLEMENTATIONS = ("described", "numpy", "compiled", "torch")
@@ -39,30 +42,7 @@ AERODYNAMICS = {
     "network_second_order": "second-order inputs",
     "network_second_order_linear_modes": "second-order inputs, linearised lattice",
 }
-OF_SPEED = ("integrators", "chosen", "ensembles", "aerodynamics", "wing_surrogates")
-"""The benchmarks that docs/speed.md shows, beside those of peers; the file has every one."""
 DATASETS = {"default": "the 50", "many": "many", "configurations": "no simulation"}
-
-
-def markdown(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A table of text."""
-    lines = [head, ["---"] * len(head), *rows]
-    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
-
-
-def rounded(value: float, digits: int = 2) -> str:
-    """`value` to so many digits that count; nothing where there is none."""
-    if not math.isfinite(value):
-        return ""
-    if value == 0.0 or 1e-3 <= abs(value) < 1e6:
-        places = digits - 1 - math.floor(math.log10(abs(value))) if value else 0
-        return f"{round(value, places):,.{max(places, 0)}f}"
-    return f"{value:.{digits - 1}e}".replace("e-0", "e-")
-
-
-def percent(value: float, digits: int = 2) -> str:
-    """A part of something."""
-    return f"{rounded(value, digits)} %" if math.isfinite(value) else ""
 
 
 def cost(results: Path, study: str, variant: str, responses: Sequence[str]) -> str:
@@ -176,41 +156,6 @@ def flights(results: Path) -> str:
     return markdown((*head, "worst error of all flights", "median flight's worst"), rows)
 
 
-def benchmarks(results: Path) -> str:
-    """What `make benchmark` timed that a reader asks for first, after a line that says where."""
-    table = pd.read_csv(results / "tables/benchmarks.csv")
-    table = table[table["subject"].isin(OF_SPEED) | table["subject"].str.startswith("peers_")]
-    machine = table.iloc[0]
-    versions = ", ".join(f"{name} {machine[name]}" for name in ("python", "numpy", "numba", "scipy", "torch"))
-    commit = str(machine["commit"])[:7]
-    head = f"{machine['processor']}, {machine['cores']} cores; {versions}; commit {commit}."
-    groups = table.groupby(["subject", "work"], sort=False)
-    return "\n\n".join([head, *(_in_turns(what, rows) for (_, what), rows in groups)])
-
-
-def _in_turns(work: str, rows: pd.DataFrame) -> str:
-    """The table of what was timed in turns, with errors where they are known."""
-    ours, subject = rows["ours"].iloc[0], rows["subject"].iloc[0]
-    known = rows["error_peer"].notna().any()
-    cells = [
-        (
-            row.peer,
-            _seconds(row),
-            rounded(row.ratio, 3) + ("" if row.peer == ours else f" ± {rounded(row.ratio_spread, 1)}"),
-            *([percent(100.0 * row.error_peer)] if known else []),
-        )
-        for row in rows.itertuples()
-    ]
-    title = f"**{work[0].upper()}{work[1:]}** (`benchmarks/{subject}.py`)"
-    return f"{title}\n\n{markdown(('', 'one call', f'of {ours}', *(['error'] if known else [])), cells)}"
-
-
-def _seconds(row: Any) -> str:
-    units = ((1.0, "s"), (1e3, "ms"), (1e6, "µs"), (1e9, "ns"))
-    scale, unit = next(((s, u) for s, u in units if row.peer_s * s >= 1.0), units[-1])
-    return f"{rounded(row.peer_s * scale, 3)} ± {rounded(row.peer_spread_s * scale, 1)} {unit}"
-
-
 TABLES: dict[str, Callable[[Path], str]] = {
     "cost of the cantilever, free": lambda results: cost(results, "cantilever", "hamiltonian", ["free"]),
     "cost of the cantilever": lambda results: cost(results, "cantilever", "hamiltonian", ["free", "forced"]),
@@ -221,7 +166,7 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "trials of the wing, as printed": lambda results: trials(results, "wing", "as_printed"),
     "cost of flights": flights,
     "crossover": crossover,
-    "benchmarks": benchmarks,
+    **SPEED,
 }
 
 

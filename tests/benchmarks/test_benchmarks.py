@@ -1,8 +1,8 @@
 """How benchmarks time, the table of all that they timed, and that what they take from flexsurr is there."""
 
 import ast
-import csv
 import importlib
+import json
 import runpy
 import sys
 import time
@@ -58,16 +58,51 @@ def test_a_call_that_works_many_times_over_is_reported_by_one(timing, clock):
     assert found["ten"].ratio == pytest.approx(1.0 / 3.0)
 
 
-def test_each_timing_is_a_row_where_a_file_is_named(timing, clock, tmp_path, monkeypatch):
-    rows = tmp_path / "rows.csv"
-    monkeypatch.setenv(timing.ROWS, str(rows))
-    timing.compare("two calls", {"a": passing(clock, [1.0]), "b": passing(clock, [4.0])}, repeats=3)
-    found = list(csv.DictReader(rows.read_text().splitlines(), timing.COLUMNS))
+@pytest.fixture
+def rows(timing, tmp_path, monkeypatch):
+    """The rows that were kept since, as a list of dicts."""
+    path = tmp_path / "rows.jsonl"
+    monkeypatch.setenv(timing.ROWS, str(path))
+    return lambda: [json.loads(line) for line in path.read_text().splitlines()]
+
+
+def test_each_timing_is_a_row_where_a_file_is_named(timing, clock, rows):
+    calls = {"a": passing(clock, [1.0]), "b": passing(clock, [4.0])}
+    timing.compare("two calls", calls, repeats=3, errors={"b": 0.1}, more={"b": {"operations": 7}})
+    found = rows()
     assert [(row["work"], row["peer"], row["ours"]) for row in found] == [
         ("two calls", "a", "a"),
         ("two calls", "b", "a"),
     ]
-    assert [float(row["ratio"]) for row in found] == [1.0, 4.0]
+    assert [row["ratio"] for row in found] == [1.0, 4.0]
+    assert [row.get("operations") for row in found] == [None, 7]
+    assert [(row["error_ours"], row["error_peer"]) for row in found] == [(None, None), (None, 0.1)]
+
+
+def test_what_was_run_once_is_a_row_without_a_spread(timing, rows):
+    timing.record("to a mark", {"a": 2.0, "b": 6.0, "c": None})
+    assert [(row["peer_s"], row["ratio"], row["ratio_spread"]) for row in rows()] == [
+        (2.0, 1.0, None),
+        (6.0, 3.0, None),
+        (None, None, None),
+    ]
+
+
+def test_a_benchmark_that_runs_again_replaces_its_own_rows_alone(sitting, timing):
+    def table(*rows):
+        lines = [json.dumps({"subject": s, "work": w} | more) for s, w, more in rows]
+        return sitting["table_of"](lines)
+
+    before = table(("integrators", "old", {}), ("training", "kept", {}))
+    now = table(("scaling", "new", {"size": 10.0}), ("integrators", "new", {}))
+    found = sitting["merged"](before, now)
+    assert list(found.columns)[: len(timing.COLUMNS)] == timing.COLUMNS
+    assert list(zip(found["subject"], found["work"], strict=True)) == [
+        ("integrators", "new"),
+        ("scaling", "new"),
+        ("training", "kept"),
+    ]
+    assert found["size"].dropna().tolist() == [10.0]
 
 
 def test_one_repeat_has_no_spread(timing):
@@ -75,9 +110,13 @@ def test_one_repeat_has_no_spread(timing):
         timing.compare("one call", {"a": lambda: None}, repeats=1)
 
 
-def test_one_sitting_runs_every_benchmark_of_speed(monkeypatch):
-    monkeypatch.syspath_prepend(BENCHMARKS)
-    listed = runpy.run_path(BENCHMARKS / "run.py")["BENCHMARKS"]
+@pytest.fixture
+def sitting(timing):
+    return runpy.run_path(str(BENCHMARKS / "run.py"))
+
+
+def test_one_sitting_runs_every_benchmark_of_speed(sitting):
+    listed = sitting["BENCHMARKS"]
     timed = {
         path.stem
         for path in BENCHMARKS.glob("*.py")
