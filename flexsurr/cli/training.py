@@ -200,11 +200,19 @@ def _because(reason: str) -> str:
 
 
 def commit() -> str | None:
-    """The hash of the commit that the current folder has checked out; None where there is none, or no git."""
+    """The hash of the commit that the current folder has checked out; None where there is none, or no git.
+
+    "+" follows where a file that git knows differs from it.
+    """
+    found = _git("rev-parse", "--verify", "HEAD")
+    changed = found and _git("status", "--porcelain", "--untracked-files=no")
+    return f"{found}+" if changed else found
+
+
+def _git(*words: str) -> str | None:
+    """What git says; None where it fails, or is not there."""
     try:
-        asked = subprocess.run(
-            ["git", "rev-parse", "--verify", "HEAD"], capture_output=True, text=True, timeout=GIT_PATIENCE_S
-        )
+        asked = subprocess.run(["git", *words], capture_output=True, text=True, timeout=GIT_PATIENCE_S)
     except (OSError, subprocess.SubprocessError):
         return None
     return asked.stdout.strip() if asked.returncode == 0 else None
