@@ -1,11 +1,11 @@
 """What a person does before a study runs: begin one, check it, look up a key."""
 
 import argparse
-import re
 import sys
 from pathlib import Path
 from typing import Any
 
+import yaml
 from pydantic import ValidationError
 
 from flexsurr.beam import EquilibriumNotFound
@@ -13,7 +13,7 @@ from flexsurr.beam.soundness import unit_hint
 from flexsurr.cli.command import for_people
 from flexsurr.config.reference import reference as all_keys
 from flexsurr.config.section import MATERIALS, Material, rectangle
-from flexsurr.config.settings import load
+from flexsurr.config.settings import check_name, load
 from flexsurr.config.structure import JOINTS, Joint, Structure
 from flexsurr.config.study_files import read_structure
 from flexsurr.evaluation.new_study import damping_s, study_files
@@ -147,9 +147,10 @@ def new_study(name: str, directory: Path, structure: Path | None, modes: int | N
     ValueError for what makes no beam, or exists already; ConfigurationError for mistakes in the file of a
     structure.
     """
-    if not re.fullmatch(r"[A-Za-z][\w-]*", name, re.ASCII):
+    check_name(name)
+    if not name[0].isalpha() or yaml.safe_load(name) != name:
         raise ValueError(
-            f"{name!r} is no name; allowed: a letter, then letters, digits, hyphens, underscores"
+            f"{name!r} is no word in YAML; allowed: a letter first, and not on, yes, null or such"
         )
     if not (directory / "config" / "config.yaml").is_file():
         raise ValueError(

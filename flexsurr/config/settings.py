@@ -19,6 +19,21 @@ from flexsurr.config.study_files import STUDIES, StudyFiles, holder, known_studi
 STORES = ("http", "https", "sqlite", "postgresql", "mysql", "mssql")
 """Kinds of stores of runs: the scheme of an address, which may name a driver too (`mysql+pymysql`)."""
 
+RULES = re.compile(
+    "accuracy|all|answer|draw_.+|evaluate|fly|fly_randomly|fly_references|ingest|join|learn_load|manifest|"
+    "rehearse|responses|rivals|rollout_cost|rollouts|score|select|shards|simulate|statics|tabulate_.+|train|"
+    "trials|validation|watch"
+)
+"""The rules of the Snakefile: no study can have such a name, by which it would be a target itself."""
+
+
+def check_name(name: str) -> None:
+    """ValueError for what cannot be the name of a study."""
+    if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_-]*", name):
+        raise ValueError(f"{name!r} is no name; allowed: letters, digits, underscores and hyphens")
+    if RULES.fullmatch(name):
+        raise ValueError(f"{name!r} is the name of a rule; allowed: any other")
+
 
 class Tracking(Record):
     """Where runs are recorded for the page on which they are compared."""
@@ -85,8 +100,7 @@ class Settings(Record):
     @classmethod
     def _have_names(cls, studies: tuple[str, ...]) -> tuple[str, ...]:
         for name in studies:
-            if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_-]*", name):
-                raise ValueError(f"{name!r} is no name; allowed: letters, digits, underscores and hyphens")
+            check_name(name)
         if len(set(studies)) != len(studies):
             raise ValueError("each at most once")
         return studies

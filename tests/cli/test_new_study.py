@@ -153,9 +153,22 @@ def test_mistakes_are_one_line_with_the_option(clone, arguments, words):
     assert not (clone / "wrong.yaml").exists()
 
 
-def test_a_name_is_one_word_and_the_folder_is_ours(clone, tmp_path):
-    with pytest.raises(ValueError, match="'my beam' is no name"):
-        new_study(clone, "my beam", *ROD)
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("my beam", "'my beam' is no name; allowed: letters, digits"),
+        ("train", "'train' is the name of a rule"),
+        ("on", "'on' is no word in YAML"),
+        ("1e5", "'1e5' is no word in YAML"),
+    ],
+)
+def test_a_name_is_one_word_that_nothing_else_has(clone, name, words):
+    with pytest.raises(ValueError, match=words):
+        new_study(clone, name, *ROD)
+    assert not (clone / f"{name}.yaml").exists()
+
+
+def test_the_folder_is_ours(tmp_path):
     with pytest.raises(ValueError, match=r"has no config/config\.yaml"):
         new_study(tmp_path, "rod", *ROD)
 

@@ -1,5 +1,6 @@
 """Bad configurations: each is refused with one line that names file, key, value and what is allowed."""
 
+import re
 import shutil
 from pathlib import Path
 
@@ -8,7 +9,7 @@ import yaml
 from editing import change
 
 from flexsurr.config.errors import ConfigurationError
-from flexsurr.config.settings import load
+from flexsurr.config.settings import RULES, load
 from flexsurr.workflow.plan import Plan
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -32,6 +33,9 @@ BAD_VALUES = [
     (CONFIG, "studies", ["cantilver"], ["studies", "'cantilver'", "allowed: airliner, cantilever"]),
     (CONFIG, "studies", ["soft beam"], ["studies", "'soft beam' is no name", "hyphens"]),
     (CONFIG, "studies", ["-x"], ["studies", "'-x' is no name", "hyphens"]),
+    (CONFIG, "studies", ["train"], ["studies", "'train' is the name of a rule", "any other"]),
+    (CONFIG, "studies", ["all"], ["studies", "'all' is the name of a rule"]),
+    (CONFIG, "studies", ["draw_wing_runs"], ["studies", "'draw_wing_runs' is the name of a rule"]),
     (CONFIG, "studies", ["wing", "wing"], ["studies", "at most once"]),
     (CONFIG, "results", "out{1}", ["results", "'out{1}'", "without braces"]),
     (CONFIG, "results", "${ABSENT}/out", ["results", "'${ABSENT}/out'", "unknown $VARIABLE"]),
@@ -232,6 +236,14 @@ def test_a_study_may_have_hyphens_in_its_name(root):
     change(root, CONFIG, "studies", ["soft-beam"])
     plan = Plan(load(root, [CONFIG]))
     assert plan.job("simulate", "soft-beam", "hamiltonian", "0")["study"] == "soft-beam"
+
+
+def test_the_names_of_rules_are_those_of_the_snakefile():
+    files = [REPOSITORY / "Snakefile", *(REPOSITORY / "workflow/rules").glob("*.smk")]
+    text = "\n".join(file.read_text() for file in files)
+    named = re.findall(r"^rule (\w+):", text, re.MULTILINE)
+    begun = [f"{name}.+" for name in re.findall(r'name:\s+f"(\w+)\{study\}', text)]
+    assert RULES.pattern.split("|") == sorted([*named, *begun])
 
 
 def test_binary_rubbish_is_named(root):

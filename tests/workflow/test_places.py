@@ -44,16 +44,6 @@ def test_a_study_is_a_target_and_no_other_study_is_made_for_it(make_project):
     assert "fly" not in scheduled
 
 
-def test_a_study_cannot_be_called_like_a_rule(make_project):
-    project = make_project()
-    shutil.copy(project.root / "config/studies/cantilever.yaml", project.root / "config/studies/train.yaml")
-    project.change("config/config.yaml", "studies", ["train"])
-    code, output = project.run("--dry-run")
-    assert code != 0
-    assert "studies: 'train' is the name of a rule" in output
-    assert "Traceback" not in output
-
-
 @pytest.mark.parametrize(
     ("target", "tool", "argument"),
     [

@@ -160,12 +160,6 @@ rule answer:
         " --frame {output.frame:q} > {log:q} 2>&1"
 
 
-if taken := sorted({*STUDIES} & {"all", *(made.name for made in workflow.rules)}):
-    raise WorkflowError(
-        f"config/config.yaml: studies: {taken[0]!r} is the name of a rule; give the study another"
-    )
-
-
 for study in STUDIES:
 
     rule:
