@@ -10,6 +10,7 @@ VENV := .venv
 INSTALLED := $(VENV)/.installed
 export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
 export MLFLOW_DISABLE_TELEMETRY := true
+export MLFLOW_SERVER_ENABLE_JOB_EXECUTION := false
 
 .PHONY: help install reproduce reproduce-full crossover report smoke lint check test coverage audit reference tables docs pictures ui benchmark browser postgresql slurm compiler clean
 
@@ -82,12 +83,12 @@ smoke: $(INSTALLED)
 		--config results=results-smoke -- \
 		results-smoke/tables/cost.csv results-smoke/figures/cantilever/figure_11.svg
 
-# A file of tests stays in one process; those that take long come first (tests/conftest.py). There is a process
+# A file of tests stays in one process; those that take long come first (tests/conftest.py). There are two processes
 # more than cores, for some of them wait: for Slurm, for servers, for a browser. The checks run beside them; what
 # they found comes last.
 test: $(INSTALLED) browser postgresql slurm compiler
 	@mkdir -p build; make check > build/check.out 2>&1 & checks=$$!; \
-	OMP_NUM_THREADS=1 python -m pytest -n $$(($$(nproc) + 1)) --dist loadfile --no-loadscope-reorder tests; \
+	OMP_NUM_THREADS=1 python -m pytest -n $$(($$(nproc) + 2)) --dist loadfile --no-loadscope-reorder tests; \
 	tests=$$?; wait $$checks || { cat build/check.out; exit 1; }; exit $$tests
 
 # numba's machine code is not seen: the equations of kernels count as missed, and other tests hold them.

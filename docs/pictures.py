@@ -46,6 +46,9 @@ QUIET = (
     "--no-first-run",
     "--hide-scrollbars",
 )
+QUIET_SERVER = {"MLFLOW_DISABLE_TELEMETRY": "true", "MLFLOW_SERVER_ENABLE_JOB_EXECUTION": "false"}
+"""Of MLflow: it asks nobody, and starts none of the processes in which it would run jobs."""
+
 PATIENCE_S = 120.0
 SETTLES_S = 1.5  # what a page moves once it is there: a chart that grows, a table that sorts
 WIDTH = 1200  # of a screenshot: its text stays legible at the width of a page
@@ -118,7 +121,7 @@ def mlflow_page(results: Path, study: str = "cantilever") -> Iterator[Served]:
             server = subprocess.Popen(
                 [*command, "--backend-store-uri", uri, "--workers", "1"],
                 cwd=folder,
-                env=os.environ | {"MLFLOW_DISABLE_TELEMETRY": "true"},
+                env=os.environ | QUIET_SERVER,
                 stdout=output,
                 stderr=subprocess.STDOUT,
                 start_new_session=True,

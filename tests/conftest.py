@@ -29,12 +29,14 @@ LONG = (
     "workflow/test_own_data.py",
     "workflow/test_study_of_the_tapered_wing.py",
     "workflow/test_numbers_of_modes.py",
+    "tracking/test_servers.py",
+    "training/test_exported_networks.py",
+    "training/test_derivatives.py",
     "workflow/test_interruptions.py",
     "workflow/test_changes.py",
     "workflow",
-    "tracking/test_servers.py",
 )
-"""What takes long: the first makes the quick preset, and those after it have no need of that."""
+"""What takes long: the first makes the quick preset, and none has need of it up to the interruptions."""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -21,6 +21,7 @@ import pandas as pd
 import psycopg2
 import pytest
 from mlflow import MlflowClient
+from pictures import QUIET_SERVER
 from run_folders import described, write_run
 from test_champion import MODEL, PARAMS, choose, oscillator
 
@@ -122,7 +123,7 @@ def serving(database: str, folder: Path, port: int) -> Iterator[str]:
         server = subprocess.Popen(
             command,
             cwd=folder,
-            env=os.environ | {"MLFLOW_DISABLE_TELEMETRY": "true"},
+            env=os.environ | QUIET_SERVER,
             stdout=log,
             stderr=subprocess.STDOUT,
             start_new_session=True,
