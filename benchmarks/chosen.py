@@ -48,6 +48,7 @@ TRIALS = {
             for n in (4, 8)
             for name in ("half_log", "atan")
         },
+        "even HNN, 4 cube": EVEN | {"hidden": (4,), "activation": "cube"},
         "HNN, 16 half_log": {"architecture": "hnn", "hidden": (16,), "activation": "half_log", "epochs": 400},
     },
     "wing": {

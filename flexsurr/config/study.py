@@ -14,7 +14,7 @@ Variant = Literal["hamiltonian", "as_printed"]
 Count = Annotated[int, Field(ge=1)]
 Share = Annotated[float, Field(gt=0.0, lt=1.0)]
 SplitBy = Literal["trajectory", "sample"]
-Activation = Literal["elu", "tanh", "softplus", "silu", "squareplus", "half_log", "atan"]
+Activation = Literal["elu", "tanh", "softplus", "silu", "squareplus", "half_log", "atan", "cube"]
 """Activation functions; flexsurr.surrogates.activations has them."""
 HigherModes = Literal["alike", "as_energetic", "as_forced"]
 

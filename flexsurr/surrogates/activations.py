@@ -13,6 +13,7 @@ vectorises.
     squareplus  (z + √(z² + 4)) / 2     (1 + z / √(z² + 4)) / 2
     half_log    ½ log(1 + z²)           z / (1 + z²)            rational from σ′ on
     atan        arctan z                1 / (1 + z²)            rational from σ′ on
+    cube        z³ / 3                  z²                      2 z
 
 A call into the C library keeps a loop from being vectorised, so the exponential and the logarithm are a few
 lines that inline into it: the exponent of a double is read and set as an integer, the rest is a polynomial.
@@ -98,6 +99,10 @@ class HalfLog(NamedTuple):
 
 class Atan(NamedTuple):
     """Arctangent, with a rational slope."""
+
+
+class Cube(NamedTuple):
+    """z³ / 3: nothing but products, and as unbounded as a polynomial."""
 
 
 @dataclass(frozen=True)
@@ -197,6 +202,11 @@ def formulas(functions: Functions) -> dict[str, tuple[Function, Function, Functi
             lambda z: 1.0 / (1.0 + z * z),
             lambda z: -2.0 * z / (1.0 + z * z) / (1.0 + z * z),
         ),
+        "cube": (
+            lambda z: z * z * z / 3.0,
+            lambda z: z * z,
+            lambda z: 2.0 * z,
+        ),
     }
 
 
@@ -232,6 +242,7 @@ TAGS: dict[str, Any] = {
     "squareplus": Squareplus(),
     "half_log": HalfLog(),
     "atan": Atan(),
+    "cube": Cube(),
 }
 
 

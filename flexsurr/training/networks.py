@@ -25,6 +25,7 @@ ACTIVATIONS: dict[str, Callable[[Tensor], Tensor]] = {
     "silu": nn.functional.silu,
     "squareplus": lambda z: 0.5 * (z + torch.sqrt(z * z + 4.0)),
     "half_log": lambda z: 0.5 * torch.log1p(z * z),
+    "cube": lambda z: z * z * z / 3.0,
     "atan": torch.atan,
 }
 

@@ -7,7 +7,7 @@ import pytest
 from oscillator import free_responses, three_pairs
 
 from flexsurr.config.trial import trial_of
-from flexsurr.surrogates import load, save
+from flexsurr.surrogates import PolynomialHamiltonian, canonical_scaling, load, save
 from flexsurr.training import fit, nmse
 from flexsurr.training.even_hnn_training import EvenHNNObjective, untrained_even_hnn
 
@@ -60,6 +60,28 @@ def test_few_neurons_learn_a_symmetric_oscillator(tmp_path):
     np.testing.assert_array_equal(
         load(tmp_path / "weights.npz").derivative(0.0, x), found.surrogate.derivative(0.0, x)
     )
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_four_cubes_learn_a_polynomial_of_degree_six(seed, tmp_path):
+    """A cubic in q² and p², but for special ones, is a sum of four cubes of linear functions of them."""
+    exponents = np.array([(2 * i, 2 * j) for i in range(4) for j in range(4 - i) if i + j > 0])
+    coefficients = np.random.default_rng(seed).uniform(0.2, 1.0, len(exponents)) / exponents.sum(axis=1) ** 2
+    responses = free_responses()
+    energy = PolynomialHamiltonian(
+        coefficients,
+        canonical_scaling(responses.scales),
+        responses.state_names,
+        responses.state_units,
+        exponents=exponents,
+    )
+    dataset = replace(
+        responses,
+        dx_train=energy.derivative(0.0, responses.x_train),
+        dx_validation=energy.derivative(0.0, responses.x_validation),
+    )
+    trial = trial_of(architecture="even_hnn", hidden=(4,), activation="cube", epochs=400, seed=seed)
+    assert fit(trial, dataset, tmp_path).validation_nmse < 1e-12
 
 
 def test_what_it_does_not_take_is_refused():
