@@ -45,7 +45,7 @@ class FeatureLimit(Record):
     @model_validator(mode="after")
     def _ordered(self) -> Self:
         if self.low >= self.high:
-            raise ValueError(f"low {self.low:g} is not below high {self.high:g}")
+            raise ValueError(f"low: {self.low:g} is not allowed; allowed: below high: {self.high:g}")
         return self
 
 

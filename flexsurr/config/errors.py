@@ -1,6 +1,7 @@
 """Configuration errors a person can act on: one line a problem, with file, key, value and what is allowed."""
 
 import difflib
+import json
 import types
 from collections.abc import Callable, Iterable, Sequence
 from typing import Annotated, Any, Union, get_args, get_origin
@@ -77,21 +78,37 @@ def _line(
         case "union_tag_invalid":
             tags = details["ctx"]
             return f"{where}.kind: {tags['tag']!r} is not allowed; allowed: {tags['expected_tags']}"
-        case "union_tag_not_found":
+        case "union_tag_not_found" if isinstance(value, dict):
             return f"{where}.kind: missing; a value is needed"
         case "too_short":
             return f"{where}: {_short(value)} is empty; allowed: at least one value"
-        case "tuple_type" | "list_type":
-            return f"{where}: {_short(value)} is not allowed; allowed: a list of values in brackets"
-        case "model_type" | "model_attributes_type" | "dict_type":
-            return f"{where}: {_short(value)} is not allowed; allowed: keys with values"
-        case _:
-            allowed = details["msg"].removeprefix("Input should be ").removeprefix("a valid ")
-            return f"{where}: {_short(value)} is not allowed; allowed: {allowed}"
+        case "too_long":
+            allowed = f"at most {details['ctx']['max_length']} values"
+        case kind:
+            # what follows a comma tells how pydantic has tried to read it
+            words = details["msg"].removeprefix("Input should be ").removeprefix("a valid ").split(",")[0]
+            allowed = ALLOWED.get(kind, words)
+    return f"{where}: {_short(value)} is not allowed; allowed: {allowed}"
+
+
+ALLOWED = {
+    "tuple_type": "a list of values in brackets",
+    "list_type": "a list of values in brackets",
+    "model_type": "keys with values",
+    "model_attributes_type": "keys with values",
+    "dict_type": "keys with values",
+    "union_tag_not_found": "keys with values",
+    "bool_type": "true or false",
+    "bool_parsing": "true or false",
+    "string_type": "text",
+    "string_too_short": "at least one character",
+}
+"""Where pydantic's own words would be foreign: what is allowed, by the type of its error."""
 
 
 def _short(value: Any) -> str:
-    text = repr(value)
+    """A value as a person writes it; the beginning of a long one."""
+    text = json.dumps(value) if value is None or isinstance(value, bool) else repr(value)
     return text if len(text) <= LONGEST_VALUE else text[:LONGEST_VALUE] + "…"
 
 

@@ -5,7 +5,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from flexsurr.config.schema import Record
+from flexsurr.config.schema import Record, check_once
 from flexsurr.config.study import DEFAULT, Count, Integrator, Learning, Share, SplitBy
 
 FILES = "files"
@@ -70,15 +70,16 @@ class Columns(Record):
     @model_validator(mode="after")
     def _one_kind_of_states(self) -> Self:
         if bool(self.pairs) == bool(self.states):
-            raise ValueError("the states are given by pairs of q and p, or else by states")
+            raise ValueError(
+                f"pairs, states: {len(self.pairs)} and {len(self.states)} are not allowed; allowed: pairs of "
+                "q and p, or else states"
+            )
         return self
 
     @model_validator(mode="after")
     def _each_name_once(self) -> Self:
         for what, names in (("columns", list(self.named)), ("names of states", list(self.state_names))):
-            twice = sorted({name for name in names if names.count(name) > 1})
-            if twice:
-                raise ValueError(f"{what}: {', '.join(twice)} more than once")
+            check_once(names, f"{what}: ")
         return self
 
     @model_validator(mode="after")

@@ -4,7 +4,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, field_validator, model_validator
 
-from flexsurr.config.schema import Record
+from flexsurr.config.schema import Record, check_once
 from flexsurr.config.structure import NotNegative, Positive
 from flexsurr.config.study import Count, check_steps
 
@@ -30,7 +30,7 @@ class TrimLimits(Record):
     @classmethod
     def _ordered(cls, limits: Range) -> Range:
         if limits[0] >= limits[1]:
-            raise ValueError(f"the lower limit {limits[0]} is not below the upper one {limits[1]}")
+            raise ValueError(f"{limits[0]}, {limits[1]} are not allowed; allowed: the lower limit, the upper")
         return limits
 
 
@@ -51,13 +51,14 @@ class DoubletTimes(Record):
     middle_s: Positive = 1.5
     """It goes to the negative one [s]."""
     end_s: Positive = 2.5
-    """It goes back [s]. The three increase."""
+    """It goes back [s], before the flight ends. The three increase."""
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:
         if not self.start_s < self.middle_s < self.end_s:
             raise ValueError(
-                f"start_s, middle_s, end_s: {self.start_s}, {self.middle_s}, {self.end_s} are not increasing"
+                f"start_s, middle_s, end_s: {self.start_s}, {self.middle_s}, {self.end_s} are not allowed; "
+                "allowed: increasing"
             )
         return self
 
@@ -118,6 +119,15 @@ class FlightSettings(Record):
         return self
 
     @model_validator(mode="after")
+    def _the_doublet_ends_in_time(self) -> Self:
+        if not self.doublet.end_s < self.duration_s:
+            raise ValueError(
+                f"doublet.end_s: {self.doublet.end_s:g} is not allowed; allowed: less than duration_s: "
+                f"{self.duration_s:g}"
+            )
+        return self
+
+    @model_validator(mode="after")
     def _modes_are_there(self) -> Self:
         for number in self.aerodynamic_modes:
             if number > self.elastic_modes:
@@ -125,6 +135,5 @@ class FlightSettings(Record):
                     f"aerodynamic_modes: mode {number} is not allowed; allowed: 1 to elastic_modes = "
                     f"{self.elastic_modes}"
                 )
-        if len(set(self.aerodynamic_modes)) != len(self.aerodynamic_modes):
-            raise ValueError("aerodynamic_modes: each mode at most once")
+        check_once(self.aerodynamic_modes, "aerodynamic_modes: ")
         return self

@@ -26,7 +26,9 @@ class Interval(Record):
     @model_validator(mode="after")
     def _ends_after_its_start(self) -> Self:
         if self.end_s is not None and not self.start_s < self.end_s:
-            raise ValueError(f"a load must end after its start: start {self.start_s} s, end {self.end_s} s")
+            raise ValueError(
+                f"end_s: {self.end_s:g} is not allowed; allowed: after start_s: {self.start_s:g}"
+            )
         return self
 
 

@@ -4,7 +4,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, field_validator, model_validator
 
-from flexsurr.config.schema import Record
+from flexsurr.config.schema import Record, check_once
 from flexsurr.config.structure import Positive
 from flexsurr.config.study import (
     DEFAULT,
@@ -73,8 +73,7 @@ class ModesStudy(Learning):
     @field_validator("modes")
     @classmethod
     def _are_different(cls, modes: tuple[int, ...]) -> tuple[int, ...]:
-        if len(set(modes)) != len(modes):
-            raise ValueError("each number at most once")
+        check_once(modes)
         return modes
 
     @model_validator(mode="after")

@@ -32,13 +32,16 @@ def own_network(architecture: str) -> OwnNetwork | None:
 
 
 def read_source(root: Path, network: OwnNetwork) -> bytes:
-    """The content of its file. Raises ValueError, of one line, where there is no such file below `root`."""
+    """The content of its file. Raises ValueError, of one line, where none can be read below `root`."""
     path = (root / network.file).resolve()
     if not path.is_relative_to(root.resolve()):
         raise ValueError(f"{network}: the file lies outside the project; allowed: a path below its root")
     if not path.is_file():
         raise ValueError(f"{network}: no file {network.file} below the project's root, {root.resolve()}")
-    return path.read_bytes()
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise ValueError(f"{network}: {network.file} cannot be read: {error.strerror}") from None
 
 
 def sha256(source: bytes) -> str:

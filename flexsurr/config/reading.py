@@ -15,24 +15,28 @@ from pydantic import BaseModel, ValidationError
 from flexsurr.config.errors import ConfigurationError, Location, describe, key_path
 
 
+def _refused(problem: str, node: yaml.Node) -> yaml.constructor.ConstructorError:
+    return yaml.constructor.ConstructorError(problem=problem, problem_mark=node.start_mark)
+
+
 class _Strict(yaml.SafeLoader):
     """YAML's safe loader, except that what it would read otherwise than it looks is an error.
 
-    That is a key given twice, of which the last would hold, and a number with a leading zero or a colon,
-    which would be of base 8 or 60.
+    That is a key given twice, of which the last would hold; one that is no text, such as 1 or on; a date; and
+    a number with a leading zero or a colon, which would be of base 8 or 60.
     """
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
-        """The mapping of `node`; raises ConstructorError for a key that comes twice."""
+        """The mapping of `node`; raises ConstructorError for a key that comes twice or is no text."""
         seen = set()
         for key_node, _ in node.value:
             if not isinstance(key_node, yaml.ScalarNode):
                 continue
-            key = (key_node.tag, key_node.value)
+            key = key_node.value
+            if not isinstance(self.construct_object(key_node), str):
+                raise _refused(f"key {key!r} is no text; allowed: in quotes", key_node)
             if key in seen:
-                raise yaml.constructor.ConstructorError(
-                    problem=f"key {key_node.value!r} is given twice", problem_mark=key_node.start_mark
-                )
+                raise _refused(f"key {key!r} is given twice", key_node)
             seen.add(key)
         return super().construct_mapping(node, deep)
 
@@ -40,23 +44,26 @@ class _Strict(yaml.SafeLoader):
 def _decimal(loader: _Strict, node: yaml.ScalarNode) -> int | float:
     whole = node.value.partition(".")[0]
     if ":" in whole or re.match(r"[-+]?0[0-9_]", whole):
-        raise yaml.constructor.ConstructorError(
-            problem=f"{node.value} is no decimal number", problem_mark=node.start_mark
-        )
+        raise _refused(f"{node.value} is no decimal number", node)
     kind = node.tag.rpartition(":")[2]
     number: int | float = getattr(loader, f"construct_yaml_{kind}")(node)
     return number
 
 
+def _date(loader: _Strict, node: yaml.ScalarNode) -> str:
+    raise _refused(f"{node.value} is a date; allowed: in quotes", node)
+
+
 for kind in ("int", "float"):
     _Strict.add_constructor(f"tag:yaml.org,2002:{kind}", _decimal)
+_Strict.add_constructor("tag:yaml.org,2002:timestamp", _date)
 
 
 def read_yaml(path: Path, shown: str | None = None) -> dict[str, Any]:
     """The keys and values of the YAML file at `path`, named `shown` in errors.
 
-    Raises ConfigurationError if the file is missing, is not YAML, or holds something else than keys
-    with values.
+    Raises ConfigurationError if the file is missing or cannot be read, is not YAML, or holds something else
+    than keys with values.
     """
     name = shown or str(path)
     try:
@@ -67,6 +74,8 @@ def read_yaml(path: Path, shown: str | None = None) -> dict[str, Any]:
         raise ConfigurationError([f"{name}: is a folder; a YAML file is needed"]) from None
     except UnicodeDecodeError as error:
         raise ConfigurationError([f"{name}: is not text in UTF-8 (byte {error.start})"]) from None
+    except OSError as error:
+        raise ConfigurationError([f"{name}: cannot be read: {error.strerror}"]) from None
     try:
         # The loader is SafeLoader with one more check.
         content = yaml.load(text, Loader=_Strict)
@@ -77,7 +86,9 @@ def read_yaml(path: Path, shown: str | None = None) -> dict[str, Any]:
         raise ConfigurationError([f"{name}{line}: is not YAML: {what}"]) from None
     except (yaml.YAMLError, ValueError) as error:
         raise ConfigurationError([f"{name}: is not YAML: {' '.join(str(error).split())}"]) from None
-    if not isinstance(content, dict) or not all(isinstance(key, str) for key in content):
+    if content is None:
+        raise ConfigurationError([f"{name}: is empty; allowed: keys with values"])
+    if not isinstance(content, dict):
         raise ConfigurationError([f"{name}: holds {content!r:.60}; allowed: keys with values"])
     return content
 

@@ -29,6 +29,16 @@ class SampleSettings(Record):
     panels: PanelCounts = PanelCounts()
     """How finely the lattice is cut."""
 
+    @model_validator(mode="after")
+    def _some_train_and_some_validate(self) -> Self:
+        validate = round(self.held_out * self.samples)
+        if not 1 <= validate <= self.samples - 2:  # of one sample no output varies
+            raise ValueError(
+                f"samples: {self.samples} is not allowed with held_out: {self.held_out:g}, which leaves "
+                f"{self.samples - validate} to train on and {validate} to validate; allowed: 2 and 1, or more"
+            )
+        return self
+
     @property
     def shards(self) -> int:
         """Number of shards; the last may hold fewer samples."""
@@ -67,5 +77,5 @@ class SampleStudy(Record):
     @model_validator(mode="after")
     def _has_a_default_sweep(self) -> Self:
         if DEFAULT not in self.sweeps:
-            raise ValueError(f"sweeps: one of them is called {DEFAULT}")
+            raise ValueError(f"sweeps: {', '.join(self.sweeps)}; allowed: one of them is called {DEFAULT}")
         return self

@@ -5,7 +5,7 @@ that it did not declare raises AttributeError, so that no result depends on a va
 make it again.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationInfo, field_validator
@@ -30,6 +30,12 @@ class Record(BaseModel):
         if isinstance(value, bool) and cls.model_fields[str(info.field_name)].annotation is not bool:
             raise ValueError(f"{str(value).lower()} is a truth value; allowed: a number or a word")
         return value
+
+
+def check_once(values: Sequence[Any], what: str = "") -> None:
+    """ValueError naming the `values` that come more than once; it begins with `what` they are."""
+    if twice := [str(value) for value in dict.fromkeys(values) if values.count(value) > 1]:
+        raise ValueError(f"{what}{', '.join(twice)} more than once; allowed: each at most once")
 
 
 RecordT = TypeVar("RecordT", bound=BaseModel)

@@ -11,7 +11,7 @@ from pydantic import Field, field_validator
 
 from flexsurr.config.errors import ConfigurationError
 from flexsurr.config.reading import Source, build, merge, read_yaml
-from flexsurr.config.schema import Record
+from flexsurr.config.schema import Record, check_once
 from flexsurr.config.sources import AnyStudy, resolve
 from flexsurr.config.study import Count
 from flexsurr.config.study_files import STUDIES, StudyFiles, holder, known_studies
@@ -101,8 +101,7 @@ class Settings(Record):
     def _have_names(cls, studies: tuple[str, ...]) -> tuple[str, ...]:
         for name in studies:
             check_name(name)
-        if len(set(studies)) != len(studies):
-            raise ValueError("each at most once")
+        check_once(studies)
         return studies
 
 

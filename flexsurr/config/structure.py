@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 from flexsurr.config.along_span import AlongSpan, FixedMass
 from flexsurr.config.along_span import NotNegative as NotNegative
 from flexsurr.config.along_span import Positive as Positive
-from flexsurr.config.schema import Record
+from flexsurr.config.schema import Record, check_once
 
 Joint = Literal["in_plane", "out_of_plane", "torsion", "axial"]
 JOINTS: tuple[Joint, ...] = ("in_plane", "out_of_plane", "torsion", "axial")
@@ -102,8 +102,7 @@ class Structure(Record):
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
-        if len(set(self.joints)) != len(self.joints):
-            raise ValueError("joints: each kind at most once")
+        check_once(self.joints, "joints: ")
         self._check_table()
         if not self._has("mass_per_length_kg_m"):
             raise ValueError("mass_per_length_kg_m: needed, here or in along_span")

@@ -7,7 +7,7 @@ from pydantic import Field, field_validator, model_validator
 
 from flexsurr.config.history import Sine
 from flexsurr.config.load import Load, TipForce
-from flexsurr.config.schema import Record
+from flexsurr.config.schema import Record, check_once
 from flexsurr.config.structure import Positive
 
 Variant = Literal["hamiltonian", "as_printed"]
@@ -135,9 +135,14 @@ class InitialConditions(Record):
     @model_validator(mode="after")
     def _ordered(self) -> Self:
         if self.q_min_deg >= self.q_max_deg:
-            raise ValueError("q_min_deg must lie below q_max_deg")
+            raise ValueError(
+                f"q_min_deg: {self.q_min_deg:g} is not allowed; allowed: below q_max_deg: {self.q_max_deg:g}"
+            )
         if self.p_min_kg_m2_s > self.p_max_kg_m2_s:
-            raise ValueError("p_min_kg_m2_s must not lie above p_max_kg_m2_s")
+            raise ValueError(
+                f"p_min_kg_m2_s: {self.p_min_kg_m2_s:g} is not allowed; allowed: at most p_max_kg_m2_s: "
+                f"{self.p_max_kg_m2_s:g}"
+            )
         return self
 
 
@@ -312,7 +317,7 @@ class Learning(Record):
     @model_validator(mode="after")
     def _one_sweep_is_the_default(self) -> Self:
         if DEFAULT not in self.sweeps:
-            raise ValueError(f"sweeps: one of them is called {DEFAULT}")
+            raise ValueError(f"sweeps: {', '.join(self.sweeps)}; allowed: one of them is called {DEFAULT}")
         _check_names("sweeps", self.sweeps)
         return self
 
@@ -364,8 +369,7 @@ class Study(Learning):
     @model_validator(mode="after")
     def _names_are_plain(self) -> Self:
         _check_names("further_datasets", self.further_datasets)
-        if len(set(self.variants)) != len(self.variants):
-            raise ValueError("variants: each at most once")
+        check_once(self.variants, "variants: ")
         return self
 
     @model_validator(mode="after")

@@ -88,7 +88,10 @@ class OptionRange(Range):
     @model_validator(mode="after")
     def _ends_are_whole(self) -> Self:
         if self.integer and not (self.low.is_integer() and self.high.is_integer()):
-            raise ValueError("low and high are whole numbers where integer is true")
+            raise ValueError(
+                f"low, high: {self.low:g}, {self.high:g} are not allowed where integer is true; "
+                "allowed: whole numbers"
+            )
         return self
 
     def _draws_whole(self) -> bool:
@@ -138,8 +141,12 @@ class Sweep(Record):
 
     @model_validator(mode="after")
     def _draws_belong_to_what_draws(self) -> Self:
-        if (self.search == "grid") == (self.draws is not None):
-            raise ValueError("draws is given exactly when search is random or sobol")
+        if self.search == "grid" and self.draws is not None:
+            raise ValueError(
+                f"draws: {self.draws} is not allowed with search: grid; allowed: random or sobol"
+            )
+        if self.search != "grid" and self.draws is None:
+            raise ValueError(f"draws: missing with search: {self.search}; allowed: 1 or more")
         return self
 
     @model_validator(mode="after")

@@ -83,7 +83,7 @@ def _drawn(sweep: Sweep, number: int, dimensions: Mapping[tuple[str, ...], Any])
         if len(found) == sweep.draws:
             return list(found.values())
     raise ValueError(
-        f"spaces, number {number}: draws: {sweep.draws} is not allowed; allowed: at most {len(found)}, for "
+        f"spaces[{number - 1}]: draws: {sweep.draws} is not allowed; allowed: at most {len(found)}, for "
         "its ranges have no more combinations that differ"
     )
 
@@ -113,5 +113,7 @@ def _trial(number: int, settings: dict[str, Any], sha256: str | None) -> Trial:
     try:
         return trial_of(**settings, sha256=sha256)
     except ValueError as error:
-        shown = ", ".join(f"{key}: {value}" for key, value in settings.items())
-        raise ValueError(f"spaces, number {number} ({shown}): {error}") from None
+        shown = ", ".join(
+            f"{key}: {list(value) if isinstance(value, tuple) else value}" for key, value in settings.items()
+        )
+        raise ValueError(f"spaces[{number - 1}] ({shown}): {error}") from None

@@ -640,7 +640,7 @@ def test_a_model_of_other_coordinates_is_refused():
         (lambda: Spread(force_N_m=float("inf")), "force_N_m"),
         (lambda: Sine(frequency_rad_s=0.0), "frequency_rad_s"),
         (lambda: Power(exponent=0), "exponent"),
-        (lambda: Constant(start_s=2.0, end_s=1.0), "must end after its start"),
+        (lambda: Constant(start_s=2.0, end_s=1.0), "end_s: 1 is not allowed; allowed: after start_s: 2"),
         (lambda: TipMoment(moment_N_m=1.0, direction=(0.0, 0.0, 0.0)), "direction"),
         (lambda: DistributedMoment(), "at least one"),
         (lambda: ClampAcceleration(acceleration_m_s2=1.0, direction=(0.0, 0.0, 0.0)), "direction"),

@@ -1,5 +1,7 @@
 """Bad configurations: each is refused with one line that names file, key, value and what is allowed."""
 
+import errno
+import os
 import re
 import shutil
 from pathlib import Path
@@ -16,6 +18,7 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 CONFIG = "config/config.yaml"
 STUDY = "config/studies/cantilever.yaml"
 STRUCTURE = "config/structures/cantilever.yaml"
+AIRLINER = "config/studies/airliner.yaml"
 SWEEP = "config/sweeps/cantilever.yaml"
 
 
@@ -36,7 +39,8 @@ BAD_VALUES = [
     (CONFIG, "studies", ["train"], ["studies", "'train' is the name of a rule", "any other"]),
     (CONFIG, "studies", ["all"], ["studies", "'all' is the name of a rule"]),
     (CONFIG, "studies", ["draw_wing_runs"], ["studies", "'draw_wing_runs' is the name of a rule"]),
-    (CONFIG, "studies", ["wing", "wing"], ["studies", "at most once"]),
+    (CONFIG, "studies", ["wing", "wing"], ["studies: wing more than once", "each at most once"]),
+    (CONFIG, "results", "", ["results: ''", "at least one character"]),
     (CONFIG, "results", "out{1}", ["results", "'out{1}'", "without braces"]),
     (CONFIG, "results", "${ABSENT}/out", ["results", "'${ABSENT}/out'", "unknown $VARIABLE"]),
     (CONFIG, "results", "~no-such-user/out", ["results", "'~no-such-user/out'", "~user"]),
@@ -54,14 +58,17 @@ BAD_VALUES = [
     ),
     (CONFIG, "overrides.cantilever.sede", 1, ["overrides.cantilever.sede", "1", "did you mean 'seed'"]),
     (STRUCTURE, "length_mm", 1000.0, ["length_mm", "1000.0", "did you mean 'length_m'"]),
-    (STRUCTURE, "length_m", "1 m", ["length_m", "'1 m'", "number"]),
+    (STRUCTURE, "length_m", "1 m", ["length_m: '1 m' is not allowed; allowed: number"]),
+    (STRUCTURE, "name", 5, ["name: 5", "allowed: text"]),
     (STRUCTURE, "length_m", -1.0, ["length_m", "-1.0", "greater than 0"]),
     (STRUCTURE, "length_m", float("nan"), ["length_m", "nan", "finite number"]),
     (STRUCTURE, "length_m", float("inf"), ["length_m", "inf", "finite number"]),
     (STRUCTURE, "length_m", True, ["length_m", "true is a truth value", "number"]),
-    (STRUCTURE, "length_m", None, ["length_m", "None", "number"]),
+    (STRUCTURE, "length_m", None, ["length_m: null", "allowed: number"]),
     (STRUCTURE, "elements", 0, ["elements", "0", "greater than or equal to 1"]),
+    (STRUCTURE, "elements", "ten", ["elements: 'ten' is not allowed; allowed: integer"]),
     (STRUCTURE, "elements", 10.5, ["elements", "10.5", "integer"]),
+    (STRUCTURE, "joints", ["torsion"] * 2, ["joints: torsion more than once"]),
     (STRUCTURE, "joints", [], ["joints", "at least one"]),
     (STRUCTURE, "joints", ["in_plain"], ["joints[0]", "'in_plain'", "did you mean 'in_plane'", "torsion"]),
     (STRUCTURE, "bending_stiffness_out_of_plane_N_m2", None, ["bending_stiffness_out_of_plane_N_m2: needed"]),
@@ -83,6 +90,20 @@ BAD_VALUES = [
     (STUDY, "dataset.duration", 0.2, ["dataset.duration", "0.2", "did you mean 'duration_s'"]),
     (STUDY, "dataset.training_fraction", 1.0, ["dataset.training_fraction", "1.0", "less than 1"]),
     (STUDY, "dataset", 5, ["dataset", "5", "keys with values"]),
+    (STUDY, "variants", ["as_printed"] * 2, ["variants: as_printed more than once", "each at most once"]),
+    (
+        STUDY,
+        "dataset.initial_conditions",
+        {"q_min_deg": 5, "q_max_deg": 1},
+        ["dataset.initial_conditions: q_min_deg: 5", "below q_max_deg: 1"],
+    ),
+    (
+        STUDY,
+        "dataset.initial_conditions",
+        {"p_min_kg_m2_s": 5, "p_max_kg_m2_s": 1},
+        ["dataset.initial_conditions: p_min_kg_m2_s: 5", "at most p_max_kg_m2_s: 1"],
+    ),
+    (AIRLINER, "dataset.samples", 1, ["dataset: samples: 1 is not allowed", "1 to train on and 0 to valid"]),
     (STUDY, "trains_on", {"default": "many"}, ["trains_on.default", "'many'", "allowed: default"]),
     (STUDY, "trains_on", {"other": "default"}, ["trains_on", "'other'", "allowed: data_free, default"]),
     (
@@ -99,6 +120,8 @@ BAD_VALUES = [
     (STUDY, "evaluation.load", {"kind": "distributed"}, ["evaluation.load: along_x", "at least one"]),
     (STUDY, "evaluation.load.kind", "gust", ["evaluation.load.kind", "'gust'", "'tip_force'", "'several'"]),
     (STUDY, "evaluation.load", {"force_N": 1.0}, ["evaluation.load.kind: missing"]),
+    (STUDY, "evaluation.load", [1], ["evaluation.load: [1] is not allowed; allowed: keys with values"]),
+    (STUDY, "evaluation.load.direction", [0, 0, 1, 0], ["load.direction", "allowed: at most 3 values"]),
     (STUDY, "evaluation.load.force", 1.0, ["evaluation.load.force:", "did you mean 'force_N'"]),
     (STUDY, "evaluation.load", {**SPREAD, "acts_on": "root"}, ["load.acts_on", "'root'", "'span' or 'tip'"]),
     (
@@ -159,9 +182,10 @@ BAD_VALUES = [
     (SWEEP, "spaces.0.architecture", "mine.py:Field", ["spaces[0].architecture", "no file mine.py below"]),
     (SWEEP, "spaces.0.architecture", "../mine.py:Field", ["spaces[0].architecture", "outside the project"]),
     (SWEEP, "spaces.1.optimiser", ["adam"], ["adam takes learning_rate and batch_size"]),
-    (SWEEP, "spaces.1.degree", [4], ["degree does nothing with hnn"]),
+    (SWEEP, "spaces.1.degree", [4], ["spaces[1] (", "hidden: [", "degree does nothing with hnn"]),
     (SWEEP, "spaces", [], ["spaces", "[]", "at least one value"]),
-    (SWEEP, "search", "random", ["draws is given exactly when search is random or sobol"]),
+    (SWEEP, "search", "random", ["draws: missing with search: random", "1 or more"]),
+    (SWEEP, "draws", 5, ["draws: 5 is not allowed with search: grid", "random or sobol"]),
     (SWEEP, "search", "sobl", ["search", "'sobl'", "did you mean 'sobol'"]),
     (SWEEP, "seed", -1, ["seed", "-1", "0"]),
     (SWEEP, "spaces.0.degree", {"low": 2, "high": 6}, ["spaces[0].degree", "search is grid", "sobol"]),
@@ -195,7 +219,10 @@ def test_a_bad_value_is_refused_with_file_key_value_and_what_is_allowed(root, fi
         ("key: [1, 2", ["line 2", "is not YAML"]),
         ("a: 1\n\tb: 2", ["line 2", "is not YAML"]),
         ("just words", ["'just words'", "keys with values"]),
-        ("", ["None", "keys with values"]),
+        ("", ["is empty", "keys with values"]),
+        ("seed: 1\non: 2", ["line 2, column 1", "key 'on' is no text", "in quotes"]),
+        ("dataset:\n  1: 2", ["line 2, column 3", "key '1' is no text"]),
+        ("name: 2020-13-01", ["line 1, column 7", "2020-13-01 is a date"]),
         ("seed: 1\nseed: 2", ["line 2", "'seed' is given twice"]),
         ("elements: 010", ["line 1", "010 is no decimal number"]),
         ("elements: 1:10", ["line 1", "1:10 is no decimal number"]),
@@ -209,6 +236,28 @@ def test_a_file_that_is_not_what_it_should_be_is_named(root, file, content, word
     (root / file).write_text(content + "\n")
     message = refusal(root)
     assert all(word in message for word in [file, *words]), message
+
+
+@pytest.mark.parametrize("file", [CONFIG, STUDY, STRUCTURE, SWEEP, "mine.py"])
+def test_a_file_that_may_not_be_read_is_named(root, monkeypatch, file):
+    """A superuser may read all files: hence a substitute for what reads them."""
+    (root / "mine.py").touch()
+    change(root, SWEEP, "spaces.0.architecture", "mine.py:Field")
+    for name in ("read_text", "read_bytes"):
+        monkeypatch.setattr(Path, name, _refusing(root / file, getattr(Path, name)))
+    message = refusal(root)
+    assert file in message
+    assert "cannot be read: Permission denied" in message
+    assert len(message.splitlines()) == 1
+
+
+def _refusing(path, read):
+    def refused(self, *arguments, **options):
+        if self == path:
+            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
+        return read(self, *arguments, **options)
+
+    return refused
 
 
 def test_a_byte_order_mark_and_numbers_that_yaml_takes_for_text_are_read_as_they_look(root):

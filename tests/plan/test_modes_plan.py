@@ -85,7 +85,7 @@ def test_a_value_changes_the_jobs_that_depend_on_it_and_no_others(root, file, ke
             [3, 6, 8, 60],
             f"{STUDY}: modes: 60 is not allowed; allowed: 1 to 48, the coordinates of",
         ),
-        (STUDY, "modes", [3, 6, 8, 3], f"{STUDY}: modes: each number at most once"),
+        (STUDY, "modes", [3, 6, 8, 3], f"{STUDY}: modes: 3 more than once; allowed: each at most once"),
         (STUDY, "trained_for", {"default": [3]}, "'default' is not allowed; allowed: degree_6"),
         (
             STUDY,

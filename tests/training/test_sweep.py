@@ -155,7 +155,7 @@ def test_a_value_more_keeps_the_other_runs():
 def test_a_combination_that_makes_no_trial_is_named(space, reason):
     with pytest.raises(ValueError, match=reason) as caught:
         expand(FieldSweep(spaces=(NETWORKS, space)))
-    assert "spaces, number 2 (" in str(caught.value)
+    assert "spaces[1] (" in str(caught.value)
     assert f"architecture: {space['architecture']}" in str(caught.value)
     assert "\n" not in str(caught.value)
 

@@ -3,6 +3,8 @@
 Which values are bad, and what is said of each: tests/config/test_errors.py.
 """
 
+import re
+
 
 def is_refused(project, *said: str) -> None:
     code, output = project.run()
@@ -23,3 +25,13 @@ def test_a_file_that_is_not_yaml_starts_nothing(make_project):
     project = make_project()
     (project.root / "config/config.yaml").write_text("spaces: [1, 2\n")
     is_refused(project, "config/config.yaml, line 2", "is not YAML")
+
+
+def test_what_jobs_read_and_cannot_be_written_is_one_line(make_project):
+    project = make_project()
+    project.results.mkdir()
+    (project.results / "jobs").touch()
+    code, output = project.run()
+    assert code == 1
+    assert re.fullmatch(r"results/jobs/\w+: Not a directory", output.splitlines()[-1])
+    assert "Traceback" not in output

@@ -68,7 +68,11 @@ def timing_cores(wildcards):
 def write(name, job):
     """The file that holds the values of the job `name`: a command depends on them, and on nothing else."""
     make = job_file if workflow.dryrun else write_job
-    return str(make(Path(RESULTS) / "jobs", name, job))
+    try:
+        return str(make(Path(RESULTS) / "jobs", name, job))
+    except OSError as error:
+        # Snakemake shows a traceback of any Exception of an input function
+        sys.exit(f"{error.filename or RESULTS}: {error.strerror}")
 
 
 def job(rule, *keys, ending=None):
