@@ -10,7 +10,8 @@ with the fewest terms among those that validate about as well as the best is kep
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import lstsq, qr
+from scipy.linalg import lstsq
+from scipy.linalg.lapack import dtpqrt
 
 from flexsurr.simulation.rhs import Array
 from flexsurr.storage import Scales
@@ -25,23 +26,26 @@ from flexsurr.surrogates.surrogate import symplectic
 from flexsurr.training.dataset import SampleSource, for_each_piece
 from flexsurr.training.losses import FieldErrors, as_good, weights_of_variance
 
+PANEL = 32  # columns that LAPACK takes at a time, as many as where it may choose
+
 
 class Triangle:
     """The R factor of the rows [matrix, targets] seen so far; the matrix has `unknowns` columns.
 
     It is what the next block of rows is joined to (the sequential tall-skinny QR of Demmel, Grigori, Hoemmen
-    & Langou, SIAM J. Sci. Comput. 34, 2012): memory is bounded, and the condition number is not squared as
-    normal equations would.
+    & Langou, SIAM J. Sci. Comput. 34, 2012, by LAPACK's QR of a triangle on rows, which knows the zeros):
+    memory is bounded, and the condition number is not squared as normal equations would.
     """
 
     def __init__(self, unknowns: int, targets: int = 1) -> None:
         self._unknowns = unknowns
-        self._triangle = np.empty((0, unknowns + targets))
+        self._triangle = np.zeros((unknowns + targets, unknowns + targets), order="F")
 
     def add(self, rows: Array) -> None:
-        """Join `rows` (m, unknowns + targets), the targets last. LinAlgError where they are not finite."""
-        (triangle,) = qr(np.concatenate([self._triangle, rows]), mode="r", overwrite_a=True)
-        self._triangle = triangle[: triangle.shape[1]]
+        """Join `rows` (m, unknowns + targets), the targets last. ValueError where they are not finite."""
+        rows = np.array(np.asarray_chkfinite(rows), order="F")
+        panel = min(PANEL, len(self._triangle))
+        self._triangle, *_ = dtpqrt(0, panel, self._triangle, rows, overwrite_a=True, overwrite_b=True)
 
     def solve(self, chosen: NDArray[np.bool_] | None = None) -> Array:
         """The solution in the `chosen` unknowns (a mask; by default all), the others being zero and left out.

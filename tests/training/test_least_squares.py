@@ -9,7 +9,7 @@ from oscillator import free_responses
 from flexsurr.surrogates import PolynomialHamiltonian, canonical_scaling
 from flexsurr.surrogates.monomials import monomials_to_degree
 from flexsurr.training import nmse, split_dataset
-from flexsurr.training.least_squares import fit_polynomial
+from flexsurr.training.least_squares import Triangle, fit_polynomial
 
 
 def sampled(truth, samples=600, seed=0):
@@ -38,6 +38,25 @@ def random_polynomial(count, degree, keep):
         ("1",) * count,
         exponents,
     )
+
+
+@pytest.mark.parametrize("order", ["C", "F"])
+@pytest.mark.parametrize("sizes", [(200,), (5, 60, 90, 45), (1,) * 200])
+def test_rows_that_come_in_blocks_give_the_factor_of_all_at_once(sizes, order):
+    rows = np.random.default_rng(3).normal(size=(200, 43)).copy(order)
+    triangle = Triangle(40, targets=3)
+    for block in np.split(rows, np.cumsum(sizes)[:-1]):
+        triangle.add(block)
+    assert np.array_equal(rows, np.random.default_rng(3).normal(size=(200, 43)))  # as they were
+    factor = np.linalg.qr(rows, mode="r")
+    np.testing.assert_allclose(np.abs(triangle._triangle), np.abs(factor), rtol=1e-12, atol=1e-12)
+    solution, *_ = np.linalg.lstsq(*np.split(rows, [40], axis=1))
+    np.testing.assert_allclose(triangle.solve(), solution, rtol=0, atol=1e-13)
+
+
+def test_rows_must_be_finite():
+    with pytest.raises(ValueError, match="infs or NaNs"):
+        Triangle(2).add(np.array([[1.0, np.nan, 0.0]]))
 
 
 KINDS = {
