@@ -1,16 +1,16 @@
 """What a structure's file cannot show: joints that move nothing, a shape that gives way, units mistaken."""
 
 import numpy as np
-from scipy.linalg import eigh, eigvalsh
+from scipy.linalg import LinAlgError, eigh, eigvalsh
 
 from flexsurr.beam.chain import stiffness_matrix
 from flexsurr.beam.clamp_rotation import turning_clamp
 from flexsurr.beam.equilibrium import EquilibriumNotFound, find_equilibrium
 from flexsurr.beam.kinematics import mass_matrix
 from flexsurr.config.load import Load
-from flexsurr.config.structure import Structure
+from flexsurr.config.structure import FEW, Structure
 
-_SINGULAR = 1e-13  # of a mass matrix whose diagonal is 1
+_SINGULAR = 1e-12  # of a mass matrix whose diagonal is 1; where it is more, ω₁ is right to 5e-4
 LEAST_RAD_S, MOST_RAD_S = 0.02, 5e4
 """Between which the first frequency of a slender structure is expected; it may well be another."""
 
@@ -23,6 +23,11 @@ def check_structure(structure: Structure) -> None:
     scaled = mass / np.where(sizes > 0.0, sizes, 1.0) / np.where(sizes > 0.0, sizes, 1.0)[:, None]
     least, motions = eigh(scaled, subset_by_index=[0, 0])
     if not least[0] > _SINGULAR:
+        if structure.elements > FEW:
+            raise ValueError(
+                f"elements: {structure.elements} is not allowed; allowed: fewer, such as {FEW}, for the mass "
+                "matrix is singular to rounding"
+            )
         kinds = np.repeat(structure.ordered_joints, structure.elements)
         moved = kinds[np.argmax(np.abs(motions[:, 0]))]
         raise ValueError(
@@ -46,10 +51,12 @@ def check_load(structure: Structure, load: Load) -> None:
 def unit_hint(structure: Structure) -> str:
     """A line where the first frequency is out of any reason, as mistaken units make it; or nothing."""
     rest = np.zeros(structure.coordinates)
-    first = float(np.sqrt(eigvalsh(stiffness_matrix(structure), mass_matrix(structure, rest))[0]))
-    if LEAST_RAD_S <= first <= MOST_RAD_S:
-        return ""
-    return (
-        f"the first frequency of {structure.name} is {first:.3g} rad/s: are lengths in m, masses in kg/m, "
-        "stiffnesses in N m² and inertia in kg m?"
-    )
+    try:
+        first = float(np.sqrt(eigvalsh(stiffness_matrix(structure), mass_matrix(structure, rest))[0]))
+    except LinAlgError:
+        odd = f"the mass matrix of {structure.name} is singular to rounding"
+    else:
+        if LEAST_RAD_S <= first <= MOST_RAD_S:
+            return ""
+        odd = f"the first frequency of {structure.name} is {first:.3g} rad/s"
+    return f"{odd}: are lengths in m, masses in kg/m, stiffnesses in N m² and inertia in kg m?"

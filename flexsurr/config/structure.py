@@ -16,6 +16,10 @@ JOINTS: tuple[Joint, ...] = ("in_plane", "out_of_plane", "torsion", "axial")
 Axis = tuple[float, float, float]
 
 
+FEW = 100
+"""Elements whose mass matrix is never singular for their number."""
+
+
 class Structure(Record):
     """Properties of the lumped-mass beam, constant or along the span; units are in the names.
 
@@ -27,8 +31,10 @@ class Structure(Record):
     """What results and errors call it."""
     length_m: Positive
     """Span of the undeformed beam, from the clamp to the tip [m]; along its axis where that is curved."""
-    elements: Annotated[int, Field(ge=1)]
-    """Rigid elements of equal length along the span, numbered from the clamp."""
+    elements: Annotated[int, Field(ge=1, le=1000)]
+    """Rigid elements of equal length along the span, numbered from the clamp. Of bending more than some 250
+    are refused, for their mass matrix is singular to rounding.
+    """
     joints: Annotated[tuple[Joint, ...], Field(min_length=1)]
     """What gives way at the root of each element. in_plane bends about z, out_of_plane about y, torsion
     twists about x, axial stretches along x; each needs its stiffness.
@@ -184,9 +190,11 @@ class Structure(Record):
 
     @property
     def plain(self) -> bool:
-        """Whether its values alone show that it can move: uniform, without weight, all joints move mass."""
+        """Whether its values alone show that it can move: of few elements, uniform, without weight, and all
+        joints move mass.
+        """
         turns_mass = "torsion" not in self.joints or self.torsional_inertia_per_length_kg_m > 0.0
-        return self.uniform and self.gravity_m_s2 == 0.0 and turns_mass
+        return self.elements <= FEW and self.uniform and self.gravity_m_s2 == 0.0 and turns_mass
 
     @property
     def straight(self) -> bool:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from flexsurr.config.study import Integrator
+from flexsurr.kernel_cache import NotCompiled
 from flexsurr.simulation.rhs import Array, Model
 from flexsurr.simulation.trajectory import Outcome
 
@@ -58,6 +59,8 @@ def run_scipy(model: Model, integrator: Integrator) -> Callable[[Array, Array], 
             try:
                 solver = solver_class(derivative, t[0], x[0], t[-1], **tolerances)
                 reason = _drive(solver, t, x, progress)
+            except NotCompiled:
+                raise  # it is not the state that ends this
             except Exception as error:  # whatever a model's Python raises is why its simulation ended
                 reason = f"{type(error).__name__}: {error}"
         if reason:

@@ -76,7 +76,9 @@ def _arrays(path: str | Path) -> dict[str, np.ndarray]:
     except FileNotFoundError:
         raise
     except (OSError, EOFError, ValueError, TypeError, RuntimeError, zipfile.BadZipFile) as error:
-        raise SurrogateFileError(f"{path}: not a readable .npz file ({error})") from None
+        # NumPy's own words advise to load it as code
+        reason = f" ({error.strerror})" if isinstance(error, OSError) and error.strerror else ""
+        raise SurrogateFileError(f"{path}: not a readable .npz file{reason}") from None
 
 
 def _numbers(name: str, array: np.ndarray) -> np.ndarray:

@@ -50,6 +50,21 @@ def test_a_joint_that_moves_no_mass_is_named():
         check_structure(massless)
 
 
+def test_more_elements_than_rounding_allows_are_refused():
+    """Of 450 the first frequency would be wrong by 85 %."""
+    check_structure(change(CANTILEVER, elements=200))
+    many = change(CANTILEVER, elements=450)
+    assert not many.plain
+    with pytest.raises(ValueError, match="elements: 450 is not allowed; allowed: fewer, such as 100"):
+        check_structure(many)
+
+
+def test_a_structure_whose_mass_matrix_is_singular_gives_a_hint():
+    values = {"torsional_inertia_per_length_kg_m": 1e-18, "centre_of_gravity_offset_m": 0.05}
+    line = change(ALL_JOINTS, **values, inertia_about_y_per_length_kg_m=0.0)
+    assert "is singular to rounding: are lengths in m" in unit_hint(line)
+
+
 def test_a_structure_that_buckles_under_its_own_weight_is_refused():
     pole = change(CANTILEVER, clamp_theta_deg=90.0, gravity_m_s2=9.81, mass_per_length_kg_m=60.0)
     with pytest.raises(

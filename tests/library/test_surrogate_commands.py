@@ -79,5 +79,12 @@ def test_a_file_that_is_none_is_refused(command, tmp_path):
     options = ("--duration", 1, "--output", tmp_path / "a.csv") if command == "simulate-surrogate" else ()
     done = run(command, file, *options)
     assert done.returncode == 1
-    assert done.stderr.startswith(f"flexsurr {command}: {file}: ")
-    assert len(done.stderr.splitlines()) == 1
+    assert done.stderr == f"flexsurr {command}: {file}: not a readable .npz file\n"
+
+
+def test_without_numbas_compiler_a_line_says_so(path, tmp_path, monkeypatch):
+    monkeypatch.setenv("NUMBA_DISABLE_JIT", "1")
+    done = run("simulate-surrogate", path, "--duration", 0.1, "--output", tmp_path / "a.csv")
+    assert done.returncode == 1
+    assert done.stderr.startswith("flexsurr simulate-surrogate: NUMBA_DISABLE_JIT is set, and")
+    assert done.stderr.endswith("SciPy's integrators\n")
