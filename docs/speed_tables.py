@@ -17,6 +17,8 @@ EQUAL_ERROR = ("peers_of_the_beam",)
 OURS = "flexsurr"
 FOLLOWS = 0.1
 """A run that errs by more does not follow the response at all."""
+APART = 4.0
+"""Runs whose errors are further apart than by this factor are not compared."""
 GOALS = (
     ("cantilever, N = 10: chosen 8 times as fast", "30 s of the cantilever, N = 10", "chosen", 8.0),
     ("its network 4 times", "30 s of the cantilever, N = 10", "of the networks", 4.0),
@@ -89,7 +91,10 @@ def _ratio(row: Any) -> str:
 
 
 def equal_errors(results: Path) -> str:
-    """Each run of another code beside that of ours whose error is nearest, and the other way round."""
+    """Each run of another code beside that of ours whose error is nearest, and the other way round.
+
+    A code that has no run near any of ours has none here.
+    """
     rows = [
         (work, code, _run(theirs, code), _run(ours, OURS), rounded(theirs.peer_s / ours.peer_s))
         for work, code, pairs in _pairs(_rows(results, *EQUAL_ERROR))
@@ -127,7 +132,8 @@ def _pairs(table: pd.DataFrame) -> Iterator[tuple[str, str, list[tuple[Any, Any]
             )
             found = {(i, int(j)) for i, j in enumerate(apart.argmin(axis=1))}
             found |= {(int(i), j) for j, i in enumerate(apart.argmin(axis=0))}
-            yield str(work), str(code), [(ours[i], theirs[j]) for i, j in sorted(found)]
+            near = sorted((i, j) for i, j in found if apart[i, j] <= np.log(APART))
+            yield str(work), str(code), [(ours[i], theirs[j]) for i, j in near]
 
 
 def _front(rows: pd.DataFrame) -> list[Any]:

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+import speed_tables
 
 DOCS = Path(__file__).parents[2] / "docs"
 TABLES = runpy.run_path(str(DOCS / "tables.py"))
@@ -58,3 +59,53 @@ def test_a_table_without_results_is_left_as_it_is(tmp_path, capsys):
     text = "<!-- table: crossover -->\n\nas before\n\n<!-- end of table -->"
     assert TABLES["written"](text, tmp_path) == text
     assert "crossover: left as it is" in capsys.readouterr().out
+
+
+MACHINE = {"processor": "a", "cores": 2, "python": 3, "numpy": 2, "numba": 1, "scipy": 1, "torch": 2}
+
+
+def measured(folder, rows):
+    """A folder of results that holds these rows of benchmarks.csv."""
+    (folder / "tables").mkdir()
+    frame = pd.DataFrame([MACHINE | {"commit": "0" * 40} | row for row in rows])
+    frame.to_csv(folder / "tables/benchmarks.csv", index=False)
+    return folder
+
+
+def run_of(code, error, seconds):
+    return {
+        "subject": "peers_of_the_beam",
+        "work": "30 s",
+        "peer": code,
+        "error_peer": error,
+        "peer_s": seconds,
+    }
+
+
+def test_runs_are_compared_at_nearest_errors_without_those_that_another_beats(tmp_path):
+    ours = [("flexsurr, rtol 1", 1e-3, 0.01), ("flexsurr, rtol 2", 1e-5, 0.1), ("flexsurr, worse", 1e-2, 1.0)]
+    theirs = [("Other, step 1", 2e-3, 0.5), ("Other, step 2", 5e-4, 2.0), ("Far, step 1", 1e-8, 9.0)]
+    results = measured(tmp_path, [run_of(*run) for run in ours + theirs])
+    assert speed_tables.equal_errors(results).splitlines()[2:] == [
+        "| 30 s | Other | 2.0e-3 in 500 ms, step 1 | 1.0e-3 in 10.0 ms, rtol 1 | 50 |",
+        "|  |  | 5.0e-4 in 2.00 s, step 2 | 1.0e-3 in 10.0 ms, rtol 1 | 200 |",
+    ]
+
+
+def test_a_benchmark_that_was_not_run_leaves_its_table_as_it_is(tmp_path, capsys):
+    measured(tmp_path, [run_of("flexsurr, rtol 1", 1e-3, 0.01)])
+    text = "<!-- table: counted -->\n\nas before\n\n<!-- end of table -->"
+    assert TABLES["written"](text, tmp_path) == text
+    assert "counted: left as it is" in capsys.readouterr().out
+
+
+def test_a_fitted_power_stands_beside_the_costs_that_it_is_of(tmp_path):
+    of = {"subject": "scaling", "peer": "compiled", "against": "elements"}
+    rows = [
+        of | {"work": f"right-hand side, elements: {size}", "size": size, "peer_s": seconds}
+        for size, seconds in ((10, 1e-6), (20, 4e-6))
+    ]
+    rows.append(of | {"work": "right-hand side: growth with elements", "exponent": 2.0})
+    assert speed_tables.growth(measured(tmp_path, rows)).splitlines()[2:] == [
+        "| right-hand side | elements, 10 to 20 | compiled | 1.0 µs, 4.0 µs | 2.0 |"
+    ]
