@@ -4,9 +4,9 @@
 
 All three integrate the same chains. The cantilever: ten elements in a plane, a point mass at the middle of
 each, a spring at each joint. The wing: sixteen elements that bend and twist, masses beside the axis, rotary
-inertia, springs and dampers; the inertia is exact, since no multibody code has the study's constant one. A
-response starts at rest in the shape of the first mode. A code's error is the largest distance of its tip from
-that of a far finer solution, over the peak of the tip's motion. Each code runs with several steps or
+inertia, springs and dampers; the inertia is exact, for neither of the others has the constant one of the
+study. A response starts at rest in the shape of the first mode. A code's error is the largest distance of its
+tip from that of a far finer solution, over the peak of the tip's motion. Each code runs with several steps or
 tolerances, as long and as short as it follows, so that they can be compared at equal errors.
 
 Exudyn steps by its generalised α method without damping of its own. MuJoCo's RK4 is explicit: it follows the

@@ -10,6 +10,7 @@ validation takes is counted for ours alone. Beside the times to a mark stands th
 held-out trajectories within the time.
 """
 
+import itertools
 import tempfile
 import time
 from collections.abc import Callable, Iterator
@@ -102,13 +103,13 @@ def in_torch(
 def by_adam(module: nn.Module, rate: float, loss: Callable, samples: int, batch: int) -> Iterator[None]:
     """Some steps at a time, so that validation sees more than ends of epochs."""
     optimiser = torch.optim.Adam(module.parameters(), lr=rate)
-    while True:
-        for number, chosen in enumerate(torch.randperm(samples).split(batch), 1):
-            optimiser.zero_grad()
-            loss(chosen).backward()
-            optimiser.step()
-            if number % 100 == 0:
-                yield
+    epochs = itertools.chain.from_iterable(torch.randperm(samples).split(batch) for _ in itertools.count())
+    for number, chosen in enumerate(epochs, 1):
+        optimiser.zero_grad()
+        loss(chosen).backward()
+        optimiser.step()
+        if number % 100 == 0:
+            yield
 
 
 def by_lbfgs(module: nn.Module, loss: Callable) -> Iterator[None]:

@@ -151,7 +151,7 @@ def peers(results: Path) -> str:
     for work, code, pairs in _pairs(_rows(results, *EQUAL_ERROR)):
         times = [theirs.peer_s / ours.peer_s for ours, theirs in pairs]
         errors = [theirs.error_peer for _, theirs in pairs]
-        span = f"{_span(times)}, as accurate to {_span([100.0 * e for e in errors])} % of the peak"
+        span = f"{_span(times)}, at errors of {_span([100.0 * e for e in errors])} % of the peak"
         rows.append((work, code, span))
     lattices = _rows(results, "peers_of_the_lattice")
     rows += [
