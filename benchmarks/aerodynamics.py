@@ -12,9 +12,10 @@ import torch
 from timing import Timing, compare, measure
 
 from flexsurr.aerodynamics.features import COEFFICIENTS, FEATURES
+from flexsurr.aerodynamics.mach_grid import fixed_machs, mach_grid
 from flexsurr.aerodynamics.quadratic import quadratic
 from flexsurr.aerodynamics.sampling import draw_features, feature_intervals
-from flexsurr.aerodynamics.vortex_lattice import fixed_machs, frozen, mach_grid, rebuilt
+from flexsurr.aerodynamics.vortex_lattice import frozen, rebuilt
 from flexsurr.config.aerodynamics import load_feature_limits
 from flexsurr.config.aircraft import load_aircraft
 from flexsurr.flight.airliner import flexible_airframe

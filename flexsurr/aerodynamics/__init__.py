@@ -3,8 +3,9 @@
 from flexsurr.aerodynamics.airframe import Airframe, ModalMotion, airframe_of
 from flexsurr.aerodynamics.features import COEFFICIENTS, FEATURES, ReferenceDimensions
 from flexsurr.aerodynamics.lattice import Lattice, airliner_lattice, panel
+from flexsurr.aerodynamics.mach_grid import MachGrid, fixed_machs, mach_grid
 from flexsurr.aerodynamics.quadratic import quadratic
-from flexsurr.aerodynamics.vortex_lattice import MachGrid, fixed_machs, frozen, mach_grid, rebuilt
+from flexsurr.aerodynamics.vortex_lattice import frozen, rebuilt
 
 __all__ = [
     "COEFFICIENTS",

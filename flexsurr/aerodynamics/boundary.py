@@ -24,7 +24,8 @@ from flexsurr.aerodynamics.features import (
 )
 from flexsurr.simulation.rhs import FLOATING_POINT
 
-COMPILED = {"fastmath": FLOATING_POINT, "error_model": "numpy", "_nrt": False}
+# inlined: a call would copy the descriptors of all arrays of the airframe, for every panel
+COMPILED = {"fastmath": FLOATING_POINT, "error_model": "numpy", "_nrt": False, "forceinline": True}
 
 BoundaryCondition = Literal["exact", "linear"]
 
@@ -40,12 +41,12 @@ def onset(exact, u):
 
 
 @njit(**COMPILED)
-def local_onset(exact, u, point, shift, i):
-    """The air's velocity over V against point i of `point` (N, 3), which moves with the airframe."""
+def local_onset(far, u, point, shift, i):
+    """The air's velocity over V against point i of `point` (N, 3), which moves; far away it is `far`."""
     x, y, z = point[i, 0], point[i, 1], point[i, 2]
     # minus Ω × r, with the body rates (−p, q, −r) in geometry axes
     a, b, c = -u[RATE_P], u[RATE_Q], -u[RATE_R]
-    vx, vy, vz = onset(exact, u)
+    vx, vy, vz = far
     vx -= b * z - c * y
     vy -= c * x - a * z
     vz -= a * y - b * x
@@ -87,9 +88,9 @@ def turned_normal(exact, panels, u, i):
 
 
 @njit(**COMPILED)
-def normal_wash(exact, panels, u, i):
-    """Velocity over V of the undisturbed air through panel i, along its normal."""
-    vx, vy, vz = local_onset(exact, u, panels.control, panels.shift, i)
+def normal_wash(exact, far, panels, u, i):
+    """Velocity over V of the undisturbed air through panel i, along its normal; `far` is the onset."""
+    vx, vy, vz = local_onset(far, u, panels.control, panels.shift, i)
     nx, ny, nz = turned_normal(exact, panels, u, i)
     if exact:
         return vx * nx + vy * ny + vz * nz

@@ -73,18 +73,19 @@ def parasite_drag(at_design_point, mach, altitude, chord):
 
 
 @njit(**COMPILED)
-def add_vortex_force(exact, panels, u, i, gamma, vx, vy, vz, y):
+def add_vortex_force(far, panels, u, i, gamma, vx, vy, vz, y):
     """Add to the sums `y` (12,) the force on bound vortex i of circulation `gamma` [m] (over V).
 
-    (vx, vy, vz) is the velocity induced at its middle, over V. Induced drag comes out directly, since the
-    force is square to the local velocity.
+    (vx, vy, vz) [m] is the velocity induced at its middle, over V, times the circulation; so both may be sums
+    over several Mach numbers. `far` is the onset. Induced drag comes out directly, since the force is square
+    to the local velocity.
     """
-    ox, oy, oz = local_onset(exact, u, panels.bound, panels.bound_shift, i)
-    vx += ox
-    vy += oy
-    vz += oz
+    ox, oy, oz = local_onset(far, u, panels.bound, panels.bound_shift, i)
+    vx += gamma * ox
+    vy += gamma * oy
+    vz += gamma * oz
     lx, ly, lz = panels.vortex[i, 0], panels.vortex[i, 1], panels.vortex[i, 2]
-    scale = 2.0 * gamma / panels.area
+    scale = 2.0 / panels.area
     fx = scale * (vy * lz - vz * ly)
     fy = scale * (vz * lx - vx * lz)
     fz = scale * (vx * ly - vy * lx)

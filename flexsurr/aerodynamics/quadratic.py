@@ -22,7 +22,8 @@ from flexsurr.aerodynamics.features import (
     RATE_P,
 )
 from flexsurr.aerodynamics.forces import add_body, name_coefficients
-from flexsurr.aerodynamics.vortex_lattice import MachGrid, frozen_matrices, write_weights
+from flexsurr.aerodynamics.mach_grid import MachGrid, write_weights
+from flexsurr.aerodynamics.vortex_lattice import frozen_matrices
 from flexsurr.simulation.mapping import CompiledMapping, implements_mapping
 from flexsurr.simulation.rhs import Array
 

@@ -2,23 +2,21 @@
 
 The rebuilt one is what the study's reference simulation pays for. The frozen one inverts its matrices once on
 the grid, then multiplies; coefficients (not matrices) are interpolated between Mach numbers, so at a node
-they are the rebuilt lattice's. By Prandtl–Glauert's rule everything depends on the Mach number through β =
-√(1 − M²) alone, and smoothly; so nodes are equally spaced in β, and Lagrange's polynomials in β pass through
-the nearest of them.
+they are the rebuilt lattice's.
 """
 
 import math
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from flexsurr.aerodynamics.airframe import Airframe, Panels, panels_of
-from flexsurr.aerodynamics.boundary import COMPILED, BoundaryCondition, normal_wash
+from flexsurr.aerodynamics.boundary import BoundaryCondition, normal_wash, onset
 from flexsurr.aerodynamics.features import COEFFICIENTS, FEATURES, MACH
 from flexsurr.aerodynamics.forces import add_body, add_vortex_force, name_coefficients
-from flexsurr.aerodynamics.horseshoe import induced, influence, stretch_of
+from flexsurr.aerodynamics.halves import frozen_in_halves, halves_of
+from flexsurr.aerodynamics.horseshoe import induced, influence
+from flexsurr.aerodynamics.mach_grid import MachGrid, write_weights
 from flexsurr.simulation.mapping import CompiledMapping, implements_mapping
 from flexsurr.simulation.rhs import Array
 
@@ -41,6 +39,7 @@ def _rebuilt(kernel, u, y, work):
     panels, exact = kernel
     ends = panels.ends
     n = ends.shape[1]
+    far = onset(exact, u)
     stretch = 1.0 / math.sqrt(1.0 - u[MACH] * u[MACH])
     matrix = np.empty((n, n))
     wash = np.empty(n)
@@ -51,7 +50,7 @@ def _rebuilt(kernel, u, y, work):
         for j in range(n):
             vx, vy, vz = induced(ends, j, stretch, x, y_, z)
             matrix[i, j] = vx * nx + vy * ny + vz * nz
-        wash[i] = -normal_wash(exact, panels, u, i)
+        wash[i] = -normal_wash(exact, far, panels, u, i)
         total += wash[i]
     if not abs(total) < np.inf:
         # beyond Mach 1, or after a flight has left the numbers: LAPACK would raise where others go on
@@ -69,69 +68,10 @@ def _rebuilt(kernel, u, y, work):
             vx += gamma[j] * ux
             vy += gamma[j] * uy
             vz += gamma[j] * uz
-        add_vortex_force(exact, panels, u, i, gamma[i], vx, vy, vz, y)
+        g = gamma[i]
+        add_vortex_force(far, panels, u, i, g, g * vx, g * vy, g * vz, y)
     add_body(exact, panels, u, y)
     name_coefficients(u, y)
-
-
-DEFAULT_NODES = 9
-DEFAULT_POINTS = 3
-
-
-class MachGrid(NamedTuple):
-    """Nodes √(1 − M²) (K,), decreasing; each interpolation uses the `points` nearest of them."""
-
-    nodes: Array
-    points: int
-
-    def machs(self) -> Array:
-        """The Mach numbers (K,) of the nodes."""
-        return np.sqrt(1.0 - self.nodes * self.nodes)
-
-
-def mach_grid(low: float, high: float, nodes: int = DEFAULT_NODES, points: int = DEFAULT_POINTS) -> MachGrid:
-    """Nodes from Mach `low` to `high`, both among them. Raises ValueError where that cannot be."""
-    if not low < high or nodes < 2:
-        raise ValueError(
-            f"Mach numbers from {low:g} to {high:g} at {nodes} nodes: low < high and two nodes needed"
-        )
-    first, last = 1.0 / stretch_of(low), 1.0 / stretch_of(high)
-    return _grid(np.linspace(first, last, nodes), points)
-
-
-def fixed_machs(machs: Sequence[float], points: int = DEFAULT_POINTS) -> MachGrid:
-    """These Mach numbers, increasing; of a single one the value is held everywhere."""
-    nodes = np.array([1.0 / stretch_of(mach) for mach in machs])
-    if nodes.size == 0 or np.any(np.diff(nodes) >= 0.0):
-        raise ValueError(f"Mach numbers {list(machs)}: one or more are needed, increasing")
-    return _grid(nodes, points)
-
-
-def _grid(nodes: Array, points: int) -> MachGrid:
-    if points < 1:
-        raise ValueError(f"interpolation through {points} points; at least one is needed")
-    return MachGrid(nodes, min(points, len(nodes)))
-
-
-@njit(**COMPILED)
-def write_weights(grid, mach, weights):
-    """Write the weight of each of the K nodes at `mach` into the first K of `weights`, most of them 0."""
-    nodes, points = grid
-    count = nodes.size
-    beta = math.sqrt(1.0 - mach * mach)
-    passed = 0
-    for k in range(count):
-        weights[k] = 0.0
-        if nodes[k] >= beta:
-            passed = k + 1
-    first = passed - points // 2
-    first = max(min(first, count - points), 0)
-    for k in range(first, first + points):
-        weight = 1.0
-        for j in range(first, first + points):
-            if j != k:
-                weight *= (beta - nodes[j]) / (nodes[k] - nodes[j])
-        weights[k] = weight
 
 
 class FrozenMatrices(NamedTuple):
@@ -163,7 +103,20 @@ def frozen_matrices(panels: Panels, grid: MachGrid) -> FrozenMatrices:
 def frozen(
     airframe: Airframe, grid: MachGrid, boundary_condition: BoundaryCondition = "exact"
 ) -> CompiledMapping:
-    """The lattice of `airframe` with matrices frozen on `grid`, from 25 features to 12 coefficients."""
+    """The lattice of `airframe` with matrices frozen on `grid`, from 25 features to 12 coefficients.
+
+    In halves where its panels are their own mirror image, else whole.
+    """
+    halves = halves_of(airframe.lattice)
+    if halves is None:
+        return frozen_whole(airframe, grid, boundary_condition)
+    return frozen_in_halves(panels_of(airframe), halves, grid, boundary_condition == "exact")
+
+
+def frozen_whole(
+    airframe: Airframe, grid: MachGrid, boundary_condition: BoundaryCondition = "exact"
+) -> CompiledMapping:
+    """The same of any lattice, symmetric or not."""
     panels = panels_of(airframe)
     kernel = Frozen(panels, boundary_condition == "exact", grid, frozen_matrices(panels, grid))
     work_size = len(grid.nodes) + 2 * len(airframe.lattice)
@@ -180,11 +133,12 @@ def _frozen(kernel, u, y, work):
     # unsigned: numba lets a signed index be negative, and a loop over such does not vectorise
     columns = np.uint64(n)
     wash, circulations = np.uint64(count), np.uint64(count + n)
+    far = onset(exact, u)
     write_weights(grid, u[MACH], work)
     for k in range(y.size):
         y[k] = 0.0
     for i in range(n):
-        work[count + i] = -normal_wash(exact, panels, u, i)
+        work[count + i] = -normal_wash(exact, far, panels, u, i)
     for node in range(count):
         weight = work[node]
         if weight == 0.0:
@@ -202,6 +156,6 @@ def _frozen(kernel, u, y, work):
                 vy += induced[node, 1, i, j] * gamma
                 vz += induced[node, 2, i, j] * gamma
             gamma = weight * work[count + n + i]
-            add_vortex_force(exact, panels, u, i, gamma, vx, vy, vz, y)
+            add_vortex_force(far, panels, u, i, gamma, gamma * vx, gamma * vy, gamma * vz, y)
     add_body(exact, panels, u, y)
     name_coefficients(u, y)

@@ -6,9 +6,10 @@ import numpy as np
 
 from flexsurr.aerodynamics.airframe import Airframe, ModalMotion
 from flexsurr.aerodynamics.boundary import BoundaryCondition
+from flexsurr.aerodynamics.mach_grid import fixed_machs, mach_grid
 from flexsurr.aerodynamics.quadratic import quadratic
 from flexsurr.aerodynamics.sampling import draw_features, feature_intervals
-from flexsurr.aerodynamics.vortex_lattice import fixed_machs, frozen, mach_grid, rebuilt
+from flexsurr.aerodynamics.vortex_lattice import frozen, rebuilt
 from flexsurr.config.aerodynamics import FeatureLimits, PanelCounts
 from flexsurr.config.aircraft import Aircraft
 from flexsurr.config.flight import FlightSettings
@@ -91,21 +92,21 @@ def lattices(
 def lattice_operations(airliner: Airliner, boundary_condition: BoundaryCondition = "exact") -> dict[str, int]:
     """What one call of each form of the lattice takes, by its name.
 
-    Every pair of panels takes as much as any other, and every panel nearly as much: its first two, three and
-    four tell what all N take, to 1 %. LAPACK's solution in the rebuilt one is added, 2/3 N³ + 2 N²
-    operations; what that does with the geometry alone, before the Mach number comes in, is not counted.
+    Of the rebuilt one, whose every pair of panels takes as much as any other and every panel nearly as much,
+    the first two, three and four panels tell what all N take, to 1 %. LAPACK's solution is added to it,
+    2/3 N³ + 2 N² operations; what it does with the geometry alone, before the Mach number comes in, is not
+    counted.
     """
     (u,) = draw_features(*feature_intervals(airliner.limits), seed=0, first=0, count=1)
+    at_one_mach = frozen_at(airliner, airliner.settings.condition.mach, boundary_condition)
+    forms = {**lattices(airliner, boundary_condition, with_rebuild=False), ONE_MACH: at_one_mach}
     few, n = (2, 3, 4), len(airliner.airframe.lattice)
-    counts: dict[str, list[int]] = {}
-    for count in few:
-        part = replace(airliner, airframe=_first_panels(airliner.airframe, count))
-        at_one_mach = frozen_at(part, airliner.settings.condition.mach, boundary_condition)
-        for name, form in {**lattices(part, boundary_condition), ONE_MACH: at_one_mach}.items():
-            counts.setdefault(name, []).append(counted_outputs(form, u)[1])
-    found = {name: round(float(np.polyval(np.polyfit(few, taken, 2), n))) for name, taken in counts.items()}
-    found[REBUILT] += round(2 / 3 * n**3 + 2 * n**2)
-    return found
+    parts = [rebuilt(_first_panels(airliner.airframe, count), boundary_condition) for count in few]
+    taken = np.polyfit(few, [counted_outputs(part, u)[1] for part in parts], 2)
+    return {
+        REBUILT: round(float(np.polyval(taken, n)) + 2 / 3 * n**3 + 2 * n**2),
+        **{name: counted_outputs(form, u)[1] for name, form in forms.items()},
+    }
 
 
 def _first_panels(airframe: Airframe, count: int) -> Airframe:

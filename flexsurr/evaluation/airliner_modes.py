@@ -5,8 +5,8 @@ from dataclasses import replace
 import pandas as pd
 
 from flexsurr.aerodynamics.features import MODES as AERODYNAMIC_MODES
+from flexsurr.aerodynamics.mach_grid import fixed_machs
 from flexsurr.aerodynamics.quadratic import quadratic
-from flexsurr.aerodynamics.vortex_lattice import fixed_machs
 from flexsurr.evaluation.airliner_models import Airliner
 from flexsurr.flight.airliner import modal_motion
 from flexsurr.flight.linearise import linearise

@@ -21,7 +21,7 @@ from flexsurr.aerodynamics.lattice import (
     PanelCounts,
     airliner_lattice,
 )
-from flexsurr.aerodynamics.vortex_lattice import fixed_machs, mach_grid
+from flexsurr.aerodynamics.mach_grid import fixed_machs, mach_grid
 
 LATTICE = airliner_lattice(AIRLINER)
 

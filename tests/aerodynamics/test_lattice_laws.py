@@ -25,9 +25,10 @@ from flexsurr.aerodynamics.features import (
     RATE_R,
 )
 from flexsurr.aerodynamics.forces import add_body
+from flexsurr.aerodynamics.mach_grid import fixed_machs, mach_grid
 from flexsurr.aerodynamics.quadratic import quadratic
 from flexsurr.aerodynamics.sampling import linear_in_modes
-from flexsurr.aerodynamics.vortex_lattice import fixed_machs, frozen, mach_grid, rebuilt
+from flexsurr.aerodynamics.vortex_lattice import frozen, rebuilt
 
 GRID = mach_grid(0.3, 0.8, nodes=3, points=2)
 UNITS = arrays(np.float64, len(FEATURES), elements=st.floats(-1.0, 1.0))

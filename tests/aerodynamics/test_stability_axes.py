@@ -21,8 +21,9 @@ from flexsurr.aerodynamics.features import (
 )
 from flexsurr.aerodynamics.forces import name_coefficients, parasite_drag, reflected
 from flexsurr.aerodynamics.horseshoe import influence
+from flexsurr.aerodynamics.mach_grid import fixed_machs
 from flexsurr.aerodynamics.quadratic import quadratic
-from flexsurr.aerodynamics.vortex_lattice import fixed_machs, frozen, rebuilt
+from flexsurr.aerodynamics.vortex_lattice import frozen, rebuilt
 
 AIRFRAME = flexible_airliner(symmetric_and_antisymmetric)
 FORM = rebuilt(AIRFRAME)

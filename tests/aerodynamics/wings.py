@@ -16,7 +16,8 @@ from flexsurr.aerodynamics.features import (
     ReferenceDimensions,
 )
 from flexsurr.aerodynamics.lattice import Lattice, PanelCounts, airliner_lattice, panel
-from flexsurr.aerodynamics.vortex_lattice import fixed_machs, frozen
+from flexsurr.aerodynamics.mach_grid import fixed_machs
+from flexsurr.aerodynamics.vortex_lattice import frozen
 from flexsurr.config.aircraft import Section, Surface, load_aircraft
 
 AIRLINER = load_aircraft(Path(__file__).parents[2] / "config" / "aircraft" / "gnba.yaml")

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from flexsurr.aerodynamics.mach_grid import fixed_machs
 from flexsurr.aerodynamics.quadratic import quadratic
-from flexsurr.aerodynamics.vortex_lattice import fixed_machs
 from flexsurr.config.aerodynamics import PanelCounts
 from flexsurr.config.aircraft import load_aircraft
 from flexsurr.flight import free_modes, stick_model

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from flexsurr.config.aerodynamics import PanelCounts, load_feature_limits
-from flexsurr.config.flight import FlightCondition, FlightSettings, RandomFlights
+from flexsurr.config.flight import DoubletTimes, FlightCondition, FlightSettings, RandomFlights
 from flexsurr.evaluation.airliner_cost import (
     TORCH,
     airliner_cost,
@@ -48,6 +48,7 @@ LIMITS = load_feature_limits(Path(__file__).resolve().parents[2] / "config/aircr
 def airliner(gnba_modes):
     settings = FlightSettings(
         duration_s=1.0,
+        doublet=DoubletTimes(start_s=0.2, middle_s=0.6, end_s=0.9),
         random_flights=RandomFlights(of_each_doublet=1, rebuild_flights=1, frozen_flights=2),
     )
     coarse = PanelCounts(wing=(10, 2), horizontal_tail=(4, 2), vertical_tail=(4, 2))
@@ -143,7 +144,9 @@ def test_states_beyond_the_limits_of_training_are_counted_for_each_input(airline
     assert nowhere["outside"].sum() == 0
     high[8] = np.radians(2.0)  # the left elevator's, which reaches 3 degrees
     frame = limit_exceedances(start, flight, run, airliner.settings, low, high).set_index("input")
-    assert frame.loc["delta_e_left", "outside"] == np.count_nonzero((run.t >= 0.5) & (run.t < 1.5))
+    times = airliner.settings.doublet
+    up = (run.t >= times.start_s) & (run.t < times.middle_s)
+    assert frame.loc["delta_e_left", "outside"] == np.count_nonzero(up)
     assert frame["outside"].sum() == frame.loc["delta_e_left", "outside"]
     summary = exceedance_summary(frame.reset_index()).set_index("input")
     assert summary.loc["delta_e_left", "flights_outside"] == 1
