@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from flexsurr.evaluation.selection import ERROR, NMSE
 from flexsurr.library import LoadedSurrogate, load_surrogate
 from flexsurr.surrogates import Hamiltonian, LearnedMap, SurrogateFileError, load_map
 
@@ -142,7 +143,7 @@ def card(model: ServedField | ServedMap, name: str, metrics: Mapping[str, Any]) 
     more = ", …" if len(model.inputs) > 2 else ""
     return "\n".join(
         [
-            f"The best surrogate of {name}, chosen among all runs of the study.",
+            f"The surrogate of {name}. {_rule(metrics)}",
             "",
             "```",
             str(model),
@@ -167,6 +168,24 @@ def card(model: ServedField | ServedMap, name: str, metrics: Mapping[str, Any]) 
 
 MEASURED = ("train_nmse", "validation_", "held_out_nmse", "long_response_error", "energy_drift", "own_energy")
 """How the names of the errors begin that a card shows."""
+
+
+LIMITS = {
+    "error_at_most_percent": ("runs", ERROR, "worst error of a response", " %"),
+    "nmse_at_most": ("networks", NMSE, "validation nmse", ""),
+}
+"""What a study's rule of choice limits: of which runs, the error, its name and its unit."""
+
+
+def _rule(metrics: Mapping[str, Any]) -> str:
+    """Why it was chosen among the runs of the study."""
+    for key, limit in metrics.get("chosen_by", {}).items():
+        runs, error, what, unit = LIMITS[key]
+        if limit is None or metrics[error] > limit:
+            return f"Of all {runs} it has the least {what}."
+        of_these = f"Of all {runs} whose {what} is at most {limit:g}{unit}"
+        return f"{of_these}, it takes the fewest operations; others may err less."
+    return "It was chosen by the rule of the study."
 
 
 def _row(names: tuple[str, ...], values: Any) -> pd.DataFrame:

@@ -24,19 +24,21 @@ def select(job: Job, runs: Path, output: Path) -> None:
     It follows from the metrics of the runs below `runs`. The best surrogate of the sweep `default` goes by
     the name of its architecture (`hnn`), that of another sweep has the sweep's name added (`hnn_paper`).
     Under "chosen" stands the name of the one that the study's rule chooses among them all. Of a study of maps
-    there is what the rule chooses for each of the trials' labels.
+    there is what the rule chooses for each of the trials' labels. Under "chosen_by" each entry has the rule.
     """
+    chosen_by = {"chosen_by": job["selection"]}
     selection: dict[str, dict[str, Any]] = {}
     for sweep, keys in job["sweeps"].items():
         records = [read_run(runs / key / "metrics.json") for key in keys]
         if job.get("maps"):
             best = select_maps(records, **job["selection"])
-            selection |= {name if sweep == DEFAULT_SWEEP else f"{name}_{sweep}": best[name] for name in best}
+            for name, entry in best.items():
+                selection[name if sweep == DEFAULT_SWEEP else f"{name}_{sweep}"] = entry | chosen_by
             continue
         for variant, chosen in select_fields(records, **job["selection"]).items():
             for name, entry in chosen.items():
                 known_as = name if sweep == DEFAULT_SWEEP else f"{name}_{sweep}"
-                selection.setdefault(variant, {})[known_as] = entry
+                selection.setdefault(variant, {})[known_as] = entry if name == "pareto" else entry | chosen_by
     if not job.get("maps"):
         for chosen in selection.values():
             entries = {name: entry for name, entry in chosen.items() if isinstance(entry, dict)}

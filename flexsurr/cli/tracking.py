@@ -10,6 +10,7 @@ from typing import Any
 from flexsurr import __version__
 from flexsurr.cli.command import Job, for_people, for_rules
 from flexsurr.config.errors import ConfigurationError
+from flexsurr.config.settings import check_address
 from flexsurr.storage import StorageError, read_json
 from flexsurr.tracking.champion import Champion, Interface, is_registered, register
 from flexsurr.tracking.page import Page
@@ -62,8 +63,18 @@ def track(results: Path, sync: bool, uri: str | None) -> None:
 
     Logs scores, figures and champions that the page lacks, and with `sync` whole runs.
 
-    A line for each study says what it lacks then. Raises StorageError if that is so in spite of `sync`.
+    A line for each study says what it lacks then. Raises StorageError if that is so in spite of `sync`, and
+    for a folder that holds no results, ConfigurationError for what is no address.
     """
+    if not ((results / "runs").is_dir() or (results / "mlflow").is_dir()):
+        raise StorageError(
+            f"--results: {results} is not allowed; allowed: a folder that holds runs or mlflow"
+        )
+    if uri is not None:
+        try:
+            check_address(uri)
+        except ValueError as error:
+            raise ConfigurationError([f"--uri: {uri!r} is {error}"]) from None
     logging.basicConfig(level=logging.INFO, stream=sys.stderr, format="%(message)s")
     runs = runs_by_study(results / "runs")
     store = _store(results / "mlflow" / "store.json", runs, sync, uri)
@@ -107,7 +118,8 @@ def _brought(page: Page, results: Path, study: str, runs: Sequence[RunFiles], sy
     if not page.is_reachable:
         lacks.append("scores, figures and champions")
     if lacks:
-        yield f"{study}: not logged: {', '.join(lacks)}; flexsurr track --sync logs them"
+        advice = "" if sync else "; flexsurr track --sync logs them"
+        yield f"{study}: not logged: {', '.join(lacks)}{advice}"
 
 
 def _counted(runs: int) -> str:

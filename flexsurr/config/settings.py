@@ -35,6 +35,14 @@ def check_name(name: str) -> None:
         raise ValueError(f"{name!r} is the name of a rule; allowed: any other")
 
 
+def check_address(uri: str) -> None:
+    """ValueError for what cannot be the address of a store of runs."""
+    scheme, _, rest = uri.partition("://")
+    if scheme.partition("+")[0] not in STORES or not rest:
+        allowed = ", ".join(f"{store}://…" for store in STORES)
+        raise ValueError(f"no address of a store; allowed: {allowed}, or nothing")
+
+
 class Tracking(Record):
     """Where runs are recorded for the page on which they are compared."""
 
@@ -44,10 +52,8 @@ class Tracking(Record):
     @field_validator("uri")
     @classmethod
     def _is_an_address(cls, uri: str | None) -> str | None:
-        scheme, separator, rest = (uri or "sqlite:///-").partition("://")
-        if scheme.partition("+")[0] not in STORES or not separator or not rest:
-            allowed = ", ".join(f"{store}://…" for store in STORES)
-            raise ValueError(f"no address of a store; allowed: {allowed}, or nothing")
+        if uri:
+            check_address(uri)
         return uri
 
 

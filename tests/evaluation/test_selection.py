@@ -1,7 +1,11 @@
 """What is chosen among runs."""
 
 import itertools
+import json
 
+import pytest
+
+from flexsurr.cli import selection
 from flexsurr.evaluation.selection import choose, select, select_maps
 
 
@@ -96,3 +100,21 @@ def test_of_maps_each_label_has_its_choice_by_validation():
             "network": network,
             "linear": "baseline",
         }
+
+
+@pytest.mark.parametrize(
+    ("more", "found"),
+    [
+        ({"selection": {"error_at_most_percent": 0.1}}, lambda selected: selected["hamiltonian"]["hnn"]),
+        ({"selection": {"nmse_at_most": 1e-6}, "maps": True}, lambda selected: selected["network"]),
+    ],
+)
+def test_what_is_selected_says_by_which_rule(tmp_path, more, found):
+    """The card of the champion tells it to its reader."""
+    (tmp_path / "one").mkdir()
+    one = record("one", study="cantilever", label="network")
+    (tmp_path / "one/metrics.json").write_text(json.dumps(one))
+    job = {"study": "cantilever", "sweeps": {"default": ["one"]}, **more}
+    selection.select(job, tmp_path, tmp_path / "selected.json")
+    entry = found(json.loads((tmp_path / "selected.json").read_text()))
+    assert entry == one | {"chosen_by": more["selection"]}

@@ -11,6 +11,7 @@ from mlflow import MlflowClient
 from run_folders import described, write_run, write_scores
 
 from flexsurr.cli.tracking import store, track
+from flexsurr.config.errors import ConfigurationError
 from flexsurr.storage import StorageError
 from flexsurr.tracking.description import RUN_KEY
 from flexsurr.tracking.run_files import UNLOGGED
@@ -84,6 +85,20 @@ def test_runs_logged_from_their_files_are_as_if_they_had_told_of_themselves(resu
     assert content(results)["hnn-2"][0] == "FAILED"
 
 
+@pytest.mark.parametrize("sync", [False, True])
+def test_a_folder_without_results_is_refused_and_not_made(tmp_path, sync):
+    with pytest.raises(StorageError, match=r"--results: .*nowhere is not allowed; allowed: a folder"):
+        track(tmp_path / "nowhere", sync=sync, uri=None)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_address_is_checked_as_that_of_the_configuration_is(tmp_path):
+    (tmp_path / "runs").mkdir()
+    with pytest.raises(ConfigurationError, match="--uri: 'localhost:5000' is no address of a store; allowed"):
+        track(tmp_path, sync=False, uri="localhost:5000")
+    assert [path.name for path in tmp_path.iterdir()] == ["runs"]
+
+
 def test_what_is_there_is_not_logged_again(results):
     train(results, "hnn-1")
     write_run(results / "runs", "hnn-2")
@@ -111,6 +126,7 @@ def test_a_store_away_while_training_is_said_and_made_up_for(results, capsys):
     assert said in capsys.readouterr().err
     with pytest.raises(StorageError, match="not all of it is on the page"):
         track(results, sync=True, uri=None)
+    assert capsys.readouterr().err.endswith(said.partition(";")[0] + "\n")
     track(results, sync=True, uri=store_uri(None, results / "mlflow"))
     assert not (folder / UNLOGGED).exists()
     assert set(content(results)) == {"hnn-1"}

@@ -241,7 +241,7 @@ def test_the_page_of_a_trial_draws_its_losses(served, browser):
 
 def test_the_page_of_the_champion_shows_its_alias_and_its_card(served, browser):
     browser.get(f"{served.address}/#/models/cantilever-hamiltonian")
-    wait_for(browser, "cantilever-hamiltonian", "champion", "Version 1")
+    wait_for(browser, "cantilever-hamiltonian", "champion", "Version 1", "Of all runs")
     assert serious(browser) == []
 
 
