@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from flexsurr.cli import datasets, evaluation, report, scoring, training, trajectories
+from flexsurr.cli import datasets, evaluation, report, scoring, selection, training, trajectories
 from flexsurr.config.settings import load
 from flexsurr.workflow.job_files import write_job
 from flexsurr.workflow.plan import Plan
@@ -54,7 +54,7 @@ class Results:
     def select(self) -> None:
         job = {"study": STUDY, "sweeps": {"default": [RUN, OTHER]}, "selection": {}}
         output = self.root / "selected" / f"{STUDY}.json"
-        scoring.select(job, self.root / "runs", output)
+        selection.select(job, self.root / "runs", output)
 
     def statics(self) -> None:
         folder = self.root / "evaluation" / STUDY
