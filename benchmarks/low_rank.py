@@ -8,7 +8,8 @@ take k (m + e). Run: python benchmarks/low_rank.py
 import numpy as np
 from intrinsic import STARTS, basis
 
-from flexsurr.surrogates import compiled
+from flexsurr.surrogates.monomials import runs
+from flexsurr.surrogates.sparse_mass import sparse_kernel
 from flexsurr.training.configuration_samples import configuration_samples
 from flexsurr.training.known_mass import fit_sparse
 
@@ -20,7 +21,10 @@ ALLOWED = (1e-2, 1e-3, 1e-4)
 def groups(modes: int):
     """Coefficients (entries, monomials) of each group of entries with the same monomials, and their sizes."""
     samples = configuration_samples(basis(modes), "hamiltonian", STARTS, SAMPLES)
-    kernel = compiled(fit_sparse(samples, DEGREE)).kernel
+    found = fit_sparse(samples, DEGREE)
+    matrix = found.parameters[: -2 * found.packed_size].reshape(found.packed_size, -1)
+    order, pieces = runs(found.exponents)
+    kernel, _ = sparse_kernel(np.ones(modes), pieces, matrix[:, order], found.stiffness, found.damping)
     shapes = [(int(entries), int(monomials)) for monomials, entries in kernel.groups]
     ends = np.cumsum([entries * monomials for entries, monomials in shapes])[:-1]
     return [part.reshape(shape) for part, shape in zip(np.split(kernel.mass, ends), shapes, strict=True)]

@@ -28,9 +28,7 @@ from flexsurr.surrogates.port_hamiltonian import (
     springs_and_dampers,
     write_kinetic_adjoint,
 )
-from flexsurr.surrogates.sparse_mass import sparse_kernel
-
-SPARSE = 0.7  # of all coefficients: with fewer that are not zero, to look them up costs less than to use all
+from flexsurr.surrogates.sparse_mass import looking_up_pays, sparse_kernel
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,13 +96,14 @@ class PolynomialPortHamiltonian(PortHamiltonian):
     def own_kernel(self) -> tuple[NamedTuple, int]:
         """Monomials as products, their adjoints for the gyroscopic term, and a small system.
 
-        Where coefficients are zero, entries of M with the same monomials are made together, of those alone.
+        Where most of many coefficients are zero, entries of M with the same monomials are made together, of
+        those alone.
         """
         _, of_q, of_p, of_rates = self.scales()
         rows, columns = np.tril_indices(self.pairs)
         order, pieces = runs(self.exponents)
         unscaled = self._coefficients[:, order] * (of_p[rows] / of_rates[columns])[:, None]
-        if np.count_nonzero(unscaled) < SPARSE * unscaled.size:
+        if looking_up_pays(unscaled):
             return sparse_kernel(1.0 / of_q, pieces, unscaled, self.stiffness, self.damping)
         kernel = PolynomialPortHamiltonianKernel(
             1.0 / of_q,

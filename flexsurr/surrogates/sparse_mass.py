@@ -22,6 +22,21 @@ from flexsurr.surrogates.port_hamiltonian import (
     write_kinetic_adjoint,
 )
 
+LOOKED_UP = 2
+"""What a coefficient with its place costs, over one in a dense product."""
+
+GROUPED = 750
+"""How many coefficients of a dense product the loops over groups cost: what a call does for any of them."""
+
+
+def looking_up_pays(coefficients: Array) -> bool:
+    """Whether the `coefficients` (entry, monomial) are cheaper by those that are not zero than all of them.
+
+    The constants are of wall times with two to ten modes. The dense product has loops of one length, which a
+    processor foresees, and fills its vectors; groups of few monomials do neither.
+    """
+    return bool(LOOKED_UP * np.count_nonzero(coefficients) + GROUPED < coefficients.size)
+
 
 class SparseMassKernel(NamedTuple):
     """Monomials of q times `inverse_q` (r,), as `write_monomials` makes them of `pieces`.

@@ -116,8 +116,8 @@ PLANES = np.array([[1.0, -1.0, -1.0], [-1.0, 1.0, -1.0]])
 
 
 def sparse_polynomial(seed: int = 0) -> PolynomialPortHamiltonian:
-    """One of degree 4 with those planes, of whose monomials some are missing in all of M."""
-    whole = port_polynomial(6, 4, even=False, seed=seed)
+    """One of degree 8 with those planes, of whose monomials many are missing in all of M."""
+    whole = port_polynomial(6, 8, even=False, seed=seed)
     flips = (PLANES < 0.0).astype(int)
     rows, columns = np.tril_indices(3)
     of_entries = (flips[:, rows] + flips[:, columns]) % 2
