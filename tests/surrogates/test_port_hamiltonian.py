@@ -17,6 +17,7 @@ from random_surrogates import (
 
 from flexsurr.surrogates import FeatureScaling, Hamiltonian, PolynomialPortHamiltonian, compiled
 from flexsurr.surrogates.packed import lower, semidefinite_factor
+from flexsurr.surrogates.sparse_mass import looking_up_pays
 
 SEEDS = st.integers(0, 2**32 - 1)
 MAKERS = {
@@ -171,3 +172,14 @@ def test_an_even_network_is_its_own_mirror_image():
         np.testing.assert_allclose(surrogate.derivative(0.0, -x), -surrogate.derivative(0.0, x), rtol=1e-12)
     other = PORT_HAMILTONIANS["network"]
     assert not np.allclose(other.derivative(0.0, -x), -other.derivative(0.0, x), rtol=1e-3)
+
+
+def test_few_coefficients_are_not_looked_up_one_by_one():
+    """Of a few modes the dense product is the cheaper one, whatever is zero."""
+    few = np.zeros((6, 22))
+    few[:, 0] = 1.0
+    assert not looking_up_pays(few)
+    many = np.zeros((36, 495))
+    many[:, :20] = 1.0
+    assert looking_up_pays(many)
+    assert not looking_up_pays(np.ones((36, 495)))
