@@ -227,6 +227,24 @@ def inference_goals(results: Path) -> str:
     return markdown(("goal", "measured", "tip error", ""), rows)
 
 
+def jacobians(results: Path) -> str:
+    """One Jacobian by differences and analytic, and what the latter makes of responses by Radau IIA."""
+    table = _rows(results, "jacobians")
+    rows = []
+    for surrogate, found in table.groupby("surrogate", sort=False):
+        own, other = (found[found["peer"] == form].set_index("rtol") for form in ("analytic", "differences"))
+        alone, responses = own[own.index.isna()].iloc[0], own[own.index.notna()]
+        cells = [
+            f"{_ratio(row)} ({other['evaluations'][row.Index]:,.0f} → {row.evaluations:,.0f})"
+            for row in responses.itertuples()
+        ]
+        rows.append((str(surrogate), seconds(alone["ours_s"], 2), seconds(alone["peer_s"], 2), *cells))
+    spans = (
+        f"response, rtol {rtol:g} (evaluations)" for rtol in sorted(table["rtol"].dropna().unique())[::-1]
+    )
+    return markdown(("", "by differences", "analytic", *spans), rows)
+
+
 def ensembles(results: Path) -> str:
     """Ten thousand responses by surrogate and step, with one thread and with all."""
     table = _rows(results, "ensembles")
@@ -248,6 +266,7 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "datasets": datasets,
     "counted": counted,
     "inference goals": inference_goals,
+    "jacobians": jacobians,
     "ensembles": ensembles,
     "benchmarks": side_by_side,
 }
