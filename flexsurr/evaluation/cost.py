@@ -37,8 +37,8 @@ log = logging.getLogger(__name__)
 # with the described model. So many calls are a steady measure by themselves, and the first few have to do.
 STEPS_IN_PYTHON = "scipy_"
 
-ENOUGH_S = 0.05
-"""A simulation whose repeats have taken so long together is timed."""
+ENOUGH_S = 0.02
+"""A simulation whose repeats have taken so long together is timed; a row is the mean of several."""
 
 
 @dataclass(frozen=True)
@@ -139,6 +139,7 @@ def measured_all(
     with measuring():
         for setup in setups:
             repeats = setup.repeats(settings)
+            first_steps(setup, basis, references[0])
             simulated = [
                 _timed(setup, basis, reference, repeats)
                 for reference in references[: setup.simulations(settings, variant)]
@@ -178,7 +179,6 @@ class Timed:
 
 def _timed(setup: Setup, basis: ModalBasis, reference: ReferenceSolution, repeats: int) -> Timed:
     model = setup.candidate.under(basis, reference.case)
-    first_steps(setup, basis, reference)
     trajectory, wall_s = wall_time(
         partial(_run, model, reference.t, reference.case.x0, setup.integrator), repeats, ENOUGH_S
     )
