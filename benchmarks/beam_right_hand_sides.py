@@ -33,13 +33,13 @@ def call_repeatedly(kernel, t, x, dx, work, count):
         x[0] += 1e-15 * dx[0]
 
 
-def caller(model, kind: str) -> Callable[[], object]:
+def caller(model, kind: str, calls: int = COMPILED_CALLS) -> Callable[[], object]:
     half = len(model.state_names) // 2
     x = np.concatenate([np.full(half, 0.3 / half), np.full(half, 0.5 / half)])
     if kind != COMPILED:
         return lambda: model.derivative(1.0, x)
     dx, work = np.empty_like(x), np.empty(model.work_size)
-    return lambda: call_repeatedly(model.kernel, 1.0, x, dx, work, COMPILED_CALLS)
+    return lambda: call_repeatedly(model.kernel, 1.0, x, dx, work, calls)
 
 
 def show(name: str, make: Callable[[str], object], repeats: int) -> None:
