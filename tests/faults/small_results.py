@@ -1,10 +1,12 @@
 """Results of two trainings made by the commands themselves."""
 
+import json
 from dataclasses import dataclass
 from pathlib import Path
 
 from flexsurr.cli import datasets, evaluation, report, scoring, selection, training, trajectories
 from flexsurr.config.settings import load
+from flexsurr.storage.frames import read_frame
 from flexsurr.workflow.job_files import write_job
 from flexsurr.workflow.plan import Plan
 
@@ -13,6 +15,23 @@ PLAN = Plan(load(REPOSITORY, ["config/config.yaml", "config/presets/quick.yaml"]
 STUDY, VARIANT = "cantilever", "hamiltonian"
 RUNS = [key for key in PLAN.studies[STUDY].runs if PLAN.runs[key].variant == VARIANT]
 RUN, OTHER = (next(key for key in RUNS if key.startswith(kind)) for kind in ("polynomial", "hnn"))
+
+
+MEASURED = ("wall_s", "processor_s")
+"""What differs from one run to the next."""
+
+
+def content(path: Path) -> object:
+    """What a file says, but for times: each byte, of JSON each value, of a history each row."""
+    if path.suffix == ".json":
+        return json.loads(path.read_text(), object_hook=_untimed)
+    if path.name == "history.parquet":
+        return read_frame(path).drop(columns=list(MEASURED), errors="ignore").to_dict()
+    return path.read_bytes()
+
+
+def _untimed(values: dict) -> dict:
+    return {key: value for key, value in values.items() if key not in MEASURED}
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from small_results import OTHER, REPOSITORY, RUN, STUDY, VARIANT, Results
+from small_results import OTHER, REPOSITORY, RUN, STUDY, VARIANT, Results, content
 
 from flexsurr.cli.report import join
 from flexsurr.cli.runs import selected_surrogates
@@ -101,7 +101,7 @@ CASES.remove(("table", flip))  # text without a checksum
 
 
 @pytest.mark.parametrize(("name", "damage"), CASES)
-def test_a_damaged_file_is_named_and_can_be_made_again(results, name, damage):
+def test_a_damaged_file_is_named_and_made_again_as_it_was(results, whole, name, damage):
     kind = KINDS[name]
     path = results.root / kind.file
     damage(path, results.root / kind.foreign)
@@ -112,6 +112,7 @@ def test_a_damaged_file_is_named_and_can_be_made_again(results, name, damage):
     path.unlink()
     kind.make(results)
     kind.read(results)
+    assert content(path) == content(whole.root / kind.file)
 
 
 def test_the_command_says_what_to_do(results):

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from small_results import OTHER, REPOSITORY, Results
+from small_results import OTHER, REPOSITORY, Results, content
 
 from flexsurr.storage import write_json
 from flexsurr.storage.frames import write_frame
@@ -38,6 +38,14 @@ WRITERS: dict[str, tuple[str, Callable[[Results, Path], None]]] = {
 }
 
 
+def is_as_if_undisturbed(path: Path, kind: str, whole: Results) -> None:
+    """A table knows its folder: the other one has a folder of that name."""
+    undisturbed = path.parent / "undisturbed" / path.parent.name / path.name
+    undisturbed.parent.mkdir(parents=True)
+    WRITERS[kind][1](whole, undisturbed)
+    assert content(path) == content(undisturbed)
+
+
 @pytest.mark.parametrize("kind", WRITERS)
 @pytest.mark.parametrize("before", [None, b"what was there before"])
 def test_a_full_disk_leaves_what_was_there(whole, tmp_path, kind, before):
@@ -57,6 +65,7 @@ def test_a_full_disk_leaves_what_was_there(whole, tmp_path, kind, before):
     assert [each.name for each in tmp_path.iterdir() if each.name != name] == []
     write(whole, path)
     assert path.stat().st_size > FITS
+    is_as_if_undisturbed(path, kind, whole)
 
 
 SMALL_DISK = """
@@ -118,3 +127,4 @@ def test_a_kill_leaves_nothing_that_looks_whole(whole, tmp_path, kind):
     assert not path.exists()
     write(whole, path)
     assert [each.name for each in tmp_path.iterdir()] == [name]
+    is_as_if_undisturbed(path, kind, whole)

@@ -338,9 +338,9 @@ def test_creating_the_store_again_changes_nothing(made):
     assert create_store(made.uri, folder, ["cantilever", "wing"]) == made
 
 
-def test_many_processes_write_at_once(made, tmp_path):
+def test_four_processes_write_at_once(made, tmp_path):
     context = get_context("spawn")
-    keys = [f"wing-{number}" for number in range(3)]
+    keys = [f"wing-{number}" for number in range(4)]
     workers = [context.Process(target=train_in_another_process, args=(made, key, tmp_path)) for key in keys]
     for worker in workers:
         worker.start()

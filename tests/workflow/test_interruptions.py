@@ -29,6 +29,10 @@ spaces:
 """
 
 
+KILL_WAIT_S = 30.0
+"""By default Slurm's KillWait: so long after SIGTERM it sends SIGKILL."""
+
+
 @pytest.fixture(scope="module")
 def prepared(quick, make_project):
     """The quick preset with one long training instead of its sweep, not yet run."""
@@ -99,10 +103,11 @@ def running_trials(project) -> list[str]:
 
 
 def jobs_told_to_stop_end_their_runs_at_once(project) -> None:
-    """SIGTERM, as a cluster sends it: the run on the page is KILLED before anything runs again."""
+    """SIGTERM, with a cluster's deadline: the run on the page is KILLED before anything runs again."""
     snakemake = project.start(*TARGETS)
     for process in wait_until_it_learns(project):
         os.kill(process, signal.SIGTERM)
+    eventually(lambda: training_processes(project) == [], within_s=KILL_WAIT_S)
     assert snakemake.wait(120) != 0
     assert running_trials(project) == []
 
