@@ -13,8 +13,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from small_results import OTHER, REPOSITORY, Results, content
+from small_results import OTHER, REPOSITORY, STUDY, VARIANT, Results, content
 
+from flexsurr.cli.trajectories import simulate
 from flexsurr.storage import write_json
 from flexsurr.storage.frames import write_frame
 from flexsurr.surrogates import load, save
@@ -38,11 +39,11 @@ WRITERS: dict[str, tuple[str, Callable[[Results, Path], None]]] = {
 }
 
 
-def is_as_if_undisturbed(path: Path, kind: str, whole: Results) -> None:
+def is_as_if_undisturbed(path: Path, write: Callable[[Results, Path], None], whole: Results) -> None:
     """A table knows its folder: the other one has a folder of that name."""
     undisturbed = path.parent / "undisturbed" / path.parent.name / path.name
     undisturbed.parent.mkdir(parents=True)
-    WRITERS[kind][1](whole, undisturbed)
+    write(whole, undisturbed)
     assert content(path) == content(undisturbed)
 
 
@@ -65,7 +66,7 @@ def test_a_full_disk_leaves_what_was_there(whole, tmp_path, kind, before):
     assert [each.name for each in tmp_path.iterdir() if each.name != name] == []
     write(whole, path)
     assert path.stat().st_size > FITS
-    is_as_if_undisturbed(path, kind, whole)
+    is_as_if_undisturbed(path, write, whole)
 
 
 SMALL_DISK = """
@@ -127,4 +128,23 @@ def test_a_kill_leaves_nothing_that_looks_whole(whole, tmp_path, kind):
     assert not path.exists()
     write(whole, path)
     assert [each.name for each in tmp_path.iterdir()] == [name]
-    is_as_if_undisturbed(path, kind, whole)
+    is_as_if_undisturbed(path, write, whole)
+
+
+@pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")  # likewise
+def test_a_simulation_killed_while_it_writes_is_made_again_as_if_undisturbed(whole, tmp_path):
+    """Of a shard so large that its writing takes a while: what is half written is used up."""
+    job = whole.job("simulate", STUDY, VARIANT, 0) | {"count": 2000}
+    path = tmp_path / "shard-0000.parquet"
+    process = multiprocessing.get_context("fork").Process(target=simulate, args=(job, path))
+    process.start()
+    while process.is_alive() and not list(tmp_path.iterdir()):
+        pass
+    process.kill()
+    process.join(60)
+    assert process.exitcode == -signal.SIGKILL
+    (half,) = tmp_path.iterdir()
+    assert half.name == f".{path.name}.part"
+    simulate(job, path)
+    assert list(tmp_path.iterdir()) == [path]
+    is_as_if_undisturbed(path, lambda _, beside: simulate(job, beside), whole)
