@@ -226,7 +226,7 @@ class EvaluationSettings(Record):
     output_step_s: Positive = 0.01
     """Between the samples at which errors are measured [s]."""
     repeats: Count = 5
-    """How often each simulation of a compiled model is timed; the median counts."""
+    """How often each simulation of a compiled model is timed, until 20 ms are full; the median counts."""
     long_responses: Count = 5
     """Further free responses, by whose tip error runs are chosen."""
     validation_duration_s: Positive = 1.0
