@@ -19,8 +19,8 @@ def _refused(problem: str, node: yaml.Node) -> yaml.constructor.ConstructorError
     return yaml.constructor.ConstructorError(problem=problem, problem_mark=node.start_mark)
 
 
-class _Strict(yaml.SafeLoader):
-    """YAML's safe loader, except that what it would read otherwise than it looks is an error.
+class _Strict(yaml.CSafeLoader):
+    """YAML's safe loader in C, except that what it would read otherwise than it looks is an error.
 
     That is a key given twice, of which the last would hold; one that is no text, such as 1 or on; a date; and
     a number with a leading zero or a colon, which would be of base 8 or 60.
