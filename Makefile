@@ -11,6 +11,8 @@ INSTALLED := $(VENV)/.installed
 export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
 export MLFLOW_DISABLE_TELEMETRY := true
 export MLFLOW_SERVER_ENABLE_JOB_EXECUTION := false
+# Hundreds of processes import the same sources, which are compiled once, whatever the surroundings say.
+export PYTHONDONTWRITEBYTECODE :=
 
 .PHONY: help install reproduce reproduce-full crossover report smoke lint check test coverage audit reference tables docs pictures ui benchmark browser postgresql slurm compiler clean
 
