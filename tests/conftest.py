@@ -1,6 +1,7 @@
 """What all tests share."""
 
 import shutil
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -43,7 +44,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """The long ones first: what is left at the end is short, and no core waits for another."""
     tests = Path(__file__).parent
 
-    def place(item: pytest.Item) -> int:
-        return next((n for n, long in enumerate(LONG) if item.path.is_relative_to(tests / long)), len(LONG))
+    @cache
+    def place(path: Path) -> int:
+        return next((n for n, long in enumerate(LONG) if path.is_relative_to(tests / long)), len(LONG))
 
-    items.sort(key=place)
+    items.sort(key=lambda item: place(item.path))
