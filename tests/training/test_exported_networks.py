@@ -104,10 +104,10 @@ def surrogate_of(form, scaling=None, **changes):
     """The surrogate of a class of own_models.py, with random weights."""
     network = OwnNetwork("own_models.py", form.__name__)
     source = Source(network, sha256(Path("own_models.py").read_bytes()), {})
-    module = source.build(4).double()
-    structure = checked(network, module, torch.ones(3, 4, dtype=torch.float64))
+    module = source.build(2).double()
+    structure = checked(network, module, torch.ones(3, 2, dtype=torch.float64))
     scaling = scaling or Scaling(q=0.5, p=2.0, energy=3.0)
-    return torch_surrogate(source, module, structure, scaling, ("q1", "q2", "p1", "p2"), ("1",) * 4)
+    return torch_surrogate(source, module, structure, scaling, ("q", "p"), ("1", "1"))
 
 
 @pytest.fixture(autouse=True)
@@ -116,8 +116,8 @@ def project(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
 
 
-SCALINGS = (Scaling(q=0.5, p=2.0, energy=3.0), FeatureScaling((0.5, 1.0, 2.0, 3.0), (1.0, 2.0, 0.1, 1.0)))
-X0, T = np.array([0.3, -0.2, 0.1, 0.4]), np.linspace(0.0, 1.0, 6)
+SCALINGS = (Scaling(q=0.5, p=2.0, energy=3.0), FeatureScaling((0.5, 2.0), (1.0, 0.1)))
+X0, T = np.array([0.3, 0.1]), np.linspace(0.0, 1.0, 6)
 
 
 @pytest.mark.parametrize("scaling", SCALINGS)

@@ -22,7 +22,7 @@ def own(make_project):
     project.change(
         preset,
         f"overrides.{STUDY}.rollouts",
-        {"repeats": 1, "integrator": {"method": "rk4", "step_s": 0.005, "rtol": None, "atol": None}},
+        {"repeats": 1, "integrator": {"method": "rk4", "step_s": 0.02, "rtol": None, "atol": None}},
     )
     (project.root / "data").mkdir()
     frame = recordings(SPRING, seed=0, trajectories=6)[["trajectory", "t", "q", "p"]]
