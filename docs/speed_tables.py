@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 from table_cells import markdown, percent, rounded, seconds
 
-SIDE_BY_SIDE = ("integrators", "chosen", "aerodynamics", "training", "wing_surrogates")
+SIDE_BY_SIDE = ("integrators", "chosen", "aerodynamics", "wing_surrogates")
 """The benchmarks that docs/speed.md shows row by row, beside those of peers; the file has every one."""
 WHERE = ["processor", "cores", "python", "numpy", "numba", "scipy", "torch", "commit"]
 EQUAL_ERROR = ("peers_of_the_beam",)
@@ -58,7 +58,7 @@ def _where(table: pd.DataFrame) -> str:
         commit = of["commit"][:7] + ("+" if of["commit"].endswith("+") else "")
         subjects = f"{', '.join(rows['subject'].unique())}: " if len(groups) > 1 else ""
         lines.append(f"{subjects}{of['processor']}, {of['cores']} cores; {versions}; commit {commit}.")
-    return "\n".join(lines)
+    return "\n\n".join(lines)
 
 
 def _in_turns(work: str, rows: pd.DataFrame) -> str:
@@ -81,7 +81,7 @@ def _in_turns(work: str, rows: pd.DataFrame) -> str:
         )
         for row in rows.itertuples()
     ]
-    head = ("", "one call", f"of {ours}", *(name.replace("_", " ") for name in known))
+    head = ("", "time", f"of {ours}", *(name.replace("_", " ") for name in known))
     return f"**{work[0].upper()}{work[1:]}** (`benchmarks/{subject}.py`)\n\n{markdown(head, cells)}"
 
 
@@ -167,9 +167,9 @@ def _span(values: list[float]) -> str:
 
 
 def growth(results: Path) -> str:
-    """Costs against sizes, from the smallest to the largest, with the exponent of the last three."""
+    """Costs of a call or an epoch, of the smallest and the largest, and the exponent of the last three."""
     table = _rows(results, "scaling")
-    sized = table[table["size"].notna()]
+    sized = table[table["size"].notna() & (table["against"] != "trajectories")]
     what = sized["work"].str.rsplit(", ", n=1).str[0]
     rows = []
     for (of, against, peer), found in sized.groupby([what, "against", "peer"], sort=False):
