@@ -64,7 +64,7 @@ def test_a_changed_limit_asks_for_new_samples_and_a_changed_seed_of_weights_does
             LIMITS,
             "low: 7000.0, high: 12000.0",
             "low: 7000.0, high: 7000.0",
-            "altitude_m.*not below high",
+            "altitude_m.*low: 7000 is not allowed; allowed: below high: 7000",
         ),
         (LIMITS, "high: 0.80", "high: 0.95", r"mach: 0\.55 to 0\.95 is not allowed.*Prandtl"),
         (LIMITS, "beta_deg:", "betta_deg:", "betta_deg.*did you mean 'beta_deg'"),
