@@ -3,6 +3,8 @@
 PYTHON ?= python3
 CORES ?= all
 PORT ?= 5000
+RESULTS ?= results
+TARGETS ?=
 ADVISORIES ?= advisories.zip
 SNAKEMAKE_OPTIONS ?=
 
@@ -21,8 +23,8 @@ help:
 	@echo "make reproduce    the whole default study, results/report.html   (CORES=2)"
 	@echo "make reproduce-full  every baseline timed on every simulation: hours, results-full/report.html"
 	@echo "make crossover    where a network pays: results/tables/crossover.csv and its figure, ten minutes"
-	@echo "make report       results/report.html anew, of what is there"
-	@echo "make ui           the page on which runs are compared, on this machine only   (PORT=5000)"
+	@echo "make report       results/report.html anew; of one study alone:   (TARGETS=airliner)"
+	@echo "make ui           the page on which runs are compared, on this machine only   (PORT=5000 RESULTS=results)"
 	@echo "make benchmark    speed, as ratios, in results/tables/benchmarks.csv"
 	@echo
 	@echo "while editing"
@@ -61,7 +63,7 @@ crossover: $(INSTALLED)
 	snakemake --cores $(CORES) $(SNAKEMAKE_OPTIONS) --configfile config/presets/crossover.yaml
 
 report: $(INSTALLED)
-	snakemake --cores $(CORES) $(SNAKEMAKE_OPTIONS) --report results/report.html
+	snakemake --cores $(CORES) $(SNAKEMAKE_OPTIONS) --report results/report.html -- $(TARGETS)
 
 # Every rule runs in the one environment that environment.txt pins, so this wish of Snakemake's linter does
 # not apply; whatever else it finds ends the check, and so does an error of its own.
@@ -116,9 +118,11 @@ audit: $(INSTALLED)
 MODEL_TRAINING := \#/experiments/1/runs?workflowType=machine_learning
 
 ui: $(INSTALLED)
-	@test -f results/mlflow/mlflow.db || { echo "no runs yet: make reproduce first"; exit 1; }
+	@test -f "$(RESULTS)/mlflow/mlflow.db" || \
+		{ echo "no runs in $(RESULTS)/mlflow: make reproduce first, or name another folder, RESULTS=results-full"; exit 1; }
+	flexsurr track --results "$(RESULTS)"
 	@echo "the page: http://127.0.0.1:$(PORT)/$(MODEL_TRAINING)"
-	mlflow ui --backend-store-uri "sqlite:///$(CURDIR)/results/mlflow/mlflow.db" --host 127.0.0.1 --port $(PORT)
+	mlflow ui --backend-store-uri "sqlite:///$$(realpath "$(RESULTS)")/mlflow/mlflow.db" --host 127.0.0.1 --port $(PORT)
 
 benchmark: $(INSTALLED)
 	python benchmarks/run.py

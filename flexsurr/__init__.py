@@ -1,5 +1,6 @@
 """flexsurr: when does a neural-network surrogate of a flexible structure pay, how much, at what loss?"""
 
+import os
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -9,6 +10,9 @@ from flexsurr import kernel_cache
 __version__ = "0.1.0"
 
 __all__ = ["load_surrogate"]
+
+if os.name != "posix":
+    raise ImportError("flexsurr runs on Linux, on macOS and in WSL: it locks files as POSIX systems do")
 
 kernel_cache.activate()
 

@@ -2,6 +2,7 @@
 
 import argparse
 import logging
+import sqlite3
 import sys
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -16,7 +17,15 @@ from flexsurr.tracking.champion import Champion, Interface, is_registered, regis
 from flexsurr.tracking.page import Page
 from flexsurr.tracking.recording import end_sweeps, log_whole, record
 from flexsurr.tracking.run_files import RunFiles, digest, runs_by_study
-from flexsurr.tracking.store import Store, create_store, read_store, store_uri, write_store
+from flexsurr.tracking.store import (
+    Store,
+    create_store,
+    keep_artefacts_beside,
+    read_store,
+    store_uri,
+    warn,
+    write_store,
+)
 
 log = logging.getLogger(__name__)
 
@@ -93,6 +102,11 @@ def _store(path: Path, studies: Collection[str], sync: bool, uri: str | None) ->
     """The store of the results; with `sync`, or at another address, what is missing of it is made."""
     known = read_store(path) if path.is_file() else None
     if not sync and uri is None:
+        if known is not None and known.uri == store_uri(None, path.parent):
+            try:
+                keep_artefacts_beside(path.parent)
+            except sqlite3.Error as error:
+                warn(f"{known.uri}: artefacts are where they were", error)
         return known
     address = store_uri(uri or (known.uri if known else None), path.parent)
     store = create_store(address, path.parent, sorted({*studies, *(known.experiments if known else ())}))

@@ -10,7 +10,8 @@ from flexsurr.simulation import simulate
 
 VALIDATION_COLUMNS = ("variant", "model", "t_s", "tip_x_m", "tip_z_m")
 
-STEP_S = 1e-3
+INTERVALS = 1000
+"""Between the times at which a response is kept, however long it lasts."""
 
 
 def validation_table(study: Study, basis: ModalBasis) -> pd.DataFrame:
@@ -21,7 +22,7 @@ def validation_table(study: Study, basis: ModalBasis) -> pd.DataFrame:
     """
     structure = basis.structure
     duration_s = study.evaluation.validation_duration_s
-    t = np.linspace(0.0, duration_s, round(duration_s / STEP_S) + 1)
+    t = np.linspace(0.0, duration_s, INTERVALS + 1)
     integrator = study.evaluation.validation_integrator
     load = excitation(study.evaluation, duration_s)
     equilibrium = find_equilibrium(structure)

@@ -87,6 +87,8 @@ def create_store(uri: str, folder: Path, studies: Sequence[str]) -> Store | None
 def _created(uri: str, folder: Path, studies: Sequence[str]) -> Store:
     folder.mkdir(parents=True, exist_ok=True)
     client = MlflowClient(uri)
+    if uri == store_uri(None, folder):
+        keep_artefacts_beside(folder)
     experiments, parents = {}, {}
     for study in studies:
         experiments[study] = _experiment(client, uri, folder, study)
@@ -111,22 +113,29 @@ def _experiment(client: MlflowClient, uri: str, folder: Path, study: str) -> str
     if experiment.lifecycle_stage != LifecycleStage.ACTIVE:
         log.warning("tracking: the experiment %s had been deleted on the page; it is restored", study)
         client.restore_experiment(known)
-    if uri == store_uri(None, folder) and place and experiment.artifact_location != place:
-        _move_artefacts(database(folder), experiment.artifact_location, place)
     for tag, value in KIND.items():
         if tag not in experiment.tags:
             client.set_experiment_tag(known, tag, value)
     return known
 
 
-def _move_artefacts(path: Path, old: str, new: str) -> None:
-    """Have the database look for artefacts below `new` instead of `old`; MLflow itself knows no such move."""
-    with closing(sqlite3.connect(path)) as connection, connection:
-        for table, columns in PLACES.items():
-            for column in columns:
-                moved = f"UPDATE {table} SET {column} = ? || substr({column}, ?)"
-                which = f"WHERE {column} = ? OR {column} LIKE ?"
-                connection.execute(f"{moved} {which}", (new, len(old) + 1, old, f"{old}/%"))
+def keep_artefacts_beside(folder: Path) -> None:
+    """Have the database in `folder` look for artefacts there, wherever both were when they were made.
+
+    MLflow itself knows no such move. Raises sqlite3.Error for a database that cannot be read, or written to.
+    """
+    if not database(folder).is_file():
+        return
+    with closing(sqlite3.connect(database(folder))) as connection, connection:
+        for study, old in connection.execute("SELECT name, artifact_location FROM experiments").fetchall():
+            new = (folder.absolute() / "artifacts" / study).as_uri()
+            if old == new or not old.endswith(f"/artifacts/{study}"):
+                continue
+            for table, columns in PLACES.items():
+                for column in columns:
+                    moved = f"UPDATE {table} SET {column} = ? || substr({column}, ?)"
+                    which = f"WHERE {column} = ? OR {column} LIKE ?"
+                    connection.execute(f"{moved} {which}", (new, len(old) + 1, old, f"{old}/%"))
 
 
 LONGEST_REASON = 300

@@ -15,7 +15,7 @@ from flexsurr.config.errors import ConfigurationError
 from flexsurr.storage import StorageError
 from flexsurr.tracking.description import RUN_KEY
 from flexsurr.tracking.run_files import UNLOGGED
-from flexsurr.tracking.store import database, read_store, store_uri
+from flexsurr.tracking.store import database, keep_artefacts_beside, read_store, store_uri
 from flexsurr.tracking.trial import tracked
 
 AWAY = "http://127.0.0.1:9"
@@ -32,7 +32,14 @@ def empty(tmp_path_factory) -> Path:
 @pytest.fixture
 def results(empty, tmp_path) -> Path:
     """Results with a store of their own, in which there is nothing yet."""
-    return shutil.copytree(empty, tmp_path / "results")
+    return copied(empty, tmp_path / "results")
+
+
+def copied(results: Path, to: Path) -> Path:
+    """A copy whose artefacts lie beside it, as Snakemake has it from its start on."""
+    shutil.copytree(results, to)
+    keep_artefacts_beside(to / "mlflow")
+    return to
 
 
 def train(results: Path, key: str, **fit) -> Path:
@@ -74,7 +81,7 @@ def content(results: Path) -> dict[str, tuple]:
 
 
 def test_runs_logged_from_their_files_are_as_if_they_had_told_of_themselves(results, tmp_path, empty):
-    elsewhere = shutil.copytree(empty, tmp_path / "elsewhere")
+    elsewhere = copied(empty, tmp_path / "elsewhere")
     for key, fit in (("hnn-1", {}), ("hnn-2", {"status": "failed", "reason": "the loss is nan"})):
         write_scores(train(results, key, **fit), long_response_error_percent_worst=0.5)
     track(results, sync=False, uri=None)

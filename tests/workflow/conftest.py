@@ -4,7 +4,7 @@ import shutil
 from pathlib import Path
 
 import pytest
-from project import Project
+from project import PRESET, Project
 
 from flexsurr.storage.files import locked
 
@@ -29,6 +29,7 @@ def make_project(tmp_path_factory):
             copy = shutil.copytree if source.is_dir() else shutil.copy2
             copy(source, root / part)
         made.append(Project(root, REPOSITORY))
+        made[-1].change(PRESET, "results", "results")
         return made[-1]
 
     yield make

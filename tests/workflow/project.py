@@ -16,8 +16,9 @@ import yaml
 from flexsurr.config.settings import load
 from flexsurr.workflow.plan import Plan
 
-CONFIGURATION = ("config/config.yaml", "config/presets/quick.yaml")
-ALWAYS = ("--configfile", CONFIGURATION[1], "--cores", "2")
+PRESET = "config/presets/quick.yaml"
+CONFIGURATION = ("config/config.yaml", PRESET)
+ALWAYS = ("--configfile", PRESET, "--cores", "2")
 SAID = "snakemake.out"
 NOWHERE = "http://127.0.0.1:9"
 """A tracking server that nobody runs: nothing listens there, which is known at once."""

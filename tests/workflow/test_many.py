@@ -76,6 +76,7 @@ def test_a_batch_makes_again_only_the_trial_that_is_gone(copy_of_quick):
     shutil.rmtree(project.results / "runs" / lost)
     marker = f"results/batches/{BEAM}/trials-{batch}.json"
     before = {key: (project.results / f"runs/{key}/weights.npz").stat().st_mtime_ns for key in kept}
+    assert project.scheduled(BEAM)["trials"] == 1
     assert project.scheduled(marker) == {"trials": 1}
     project.run_well(marker)
     assert (project.results / f"runs/{lost}/metrics.json").is_file()

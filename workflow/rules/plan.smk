@@ -51,7 +51,9 @@ if workflow.is_main_process:
         logger.info(line)
     for note in outdated(Path(RESULTS)):
         # It is wrong, and no plan is right while it is there: a dry run removes it too.
-        logger.info(f"{note}: a file that it tells of is gone; its batch runs again")
+        logger.info(
+            f"{note}: a file that it tells of is gone; its batch runs again where it is needed"
+        )
         with suppress(OSError):
             note.unlink()
 

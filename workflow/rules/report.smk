@@ -169,3 +169,5 @@ for study in STUDIES:
         input:
             expand(f"{RESULTS}/figures/{study}/{{name}}.svg", name=plan.figures(study)),
             expand(f"{RESULTS}/tables/{study}/{{name}}.html", name=plan.tables(study)),
+            # a run that has been deleted comes back
+            needed(plan.files(study, "metrics")),
