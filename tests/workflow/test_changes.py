@@ -95,6 +95,7 @@ def test_editing_the_file_of_a_network_of_ones_own_trains_it_anew(copy_of_quick)
 
 
 def test_a_value_that_is_removed_deletes_nothing_and_one_that_comes_back_trains_nothing(copy_of_quick):
+    copy_of_quick.tell_no_page()
     target = f"results/selected/{BEAM}.json"
     before = copy_of_quick.plan.studies[BEAM].runs
     spaces = yaml.safe_load((copy_of_quick.root / SWEEP).read_text())["spaces"]

@@ -69,6 +69,7 @@ def test_batches_make_what_single_jobs_make(quick, one_by_one, make_project):
 
 def test_a_batch_makes_again_only_the_trial_that_is_gone(copy_of_quick):
     project = copy_of_quick
+    project.tell_no_page()
     batches = project.plan.trial_batches[BEAM]
     batch, keys = max(batches.items(), key=lambda item: len(item[1]))
     lost, *kept = keys
