@@ -47,7 +47,9 @@ def test_what_a_check_finds_beside_the_tests_ends_make_test(tmp_path, failing):
     for tool in ("snakemake", "python", *CHECKS):
         (tools / tool).write_text(f"#!/bin/sh\necho {tool} says\nexit {int(tool == failing)}\n")
         (tools / tool).chmod(0o755)
-    done = subprocess.run(["make", "test"], cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    done = subprocess.run(
+        ["make", "--no-print-directory", "test"], cwd=tmp_path, capture_output=True, text=True, timeout=60
+    )
     said = done.stdout.splitlines()
     assert (done.returncode == 0) == (failing == "")
     assert said[0] == "python says"

@@ -6,6 +6,7 @@ import tempfile
 from pathlib import Path
 
 import pytest
+from project import PRESET
 
 from flexsurr.report.catalogue import FIGURES
 
@@ -29,7 +30,7 @@ def test_a_study_with_a_hyphen_in_folders_with_spaces(make_project, elsewhere):
         project.root / "config/studies/cantilever.yaml", project.root / "config/studies/soft-beam.yaml"
     )
     project.change("config/config.yaml", "studies", ["soft-beam"])
-    project.change("config/config.yaml", "results", "my results")
+    project.change(PRESET, "results", "my results")
     (project.root / "my results").symlink_to(elsewhere)
     project.run_well("my results/evaluation/soft-beam/statics.parquet")
     assert (elsewhere / "evaluation/soft-beam/statics.parquet").is_file()
