@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from flexsurr.simulation.mapping import CompiledMapping, implements_mapping, implements_mapping_jacobian
@@ -16,6 +17,7 @@ from flexsurr.simulation.rhs import Array
 from flexsurr.surrogates.activations import ActivationFunction, activation_function, slope, value
 from flexsurr.surrogates.layers import Dense, Shapes, forward, layer_shapes, offset, read, size_of, views
 from flexsurr.surrogates.learned_map import Intervals
+from flexsurr.surrogates.packed import OPTIONS
 
 Pairs = tuple[tuple[int, int], ...]
 
@@ -185,18 +187,25 @@ class NetworkMapKernel(NamedTuple):
     reads: NDArray[np.int64]
 
 
-@implements_mapping(NetworkMapKernel)
-def _network_map(kernel, u, y, work):
-    activation, origin, layer, readout, constants, products, reads = kernel
-    # work: the inputs and their products, then the neurons
-    n = offset(origin.size)
-    inputs = n + offset(products.shape[0])
-    hidden = offset(readout.size // constants.size)
+@njit(forceinline=True, **OPTIONS)
+def _write_arguments(kernel, u, n, inputs, hidden, work):
+    """The inputs from their origin, their products, and the arguments of the neurons."""
+    origin, products = kernel.origin, kernel.products
     for j in range(n):
         work[j] = u[j] - origin[j]
     for m in range(offset(products.shape[0])):
         work[n + m] = work[products[m, 0]] * work[products[m, 1]]
-    forward(layer, offset(0), inputs, hidden, work, offset(0), inputs)
+    forward(kernel.layer, offset(0), inputs, hidden, work, offset(0), inputs)
+
+
+@implements_mapping(NetworkMapKernel)
+def _network_map(kernel, u, y, work):
+    activation, origin, _, readout, constants, products, reads = kernel
+    # work: the inputs and their products, then the neurons
+    n = offset(origin.size)
+    inputs = n + offset(products.shape[0])
+    hidden = offset(readout.size // constants.size)
+    _write_arguments(kernel, u, n, inputs, hidden, work)
     for k in range(hidden):
         work[inputs + k] = value(activation, work[inputs + k])
     for i in range(offset(constants.size)):
@@ -213,11 +222,7 @@ def _jacobian_of_network_map(kernel, u, jac, work):
     inputs = n + offset(products.shape[0])
     hidden = offset(readout.size // constants.size)
     weighted = inputs + hidden
-    for j in range(n):
-        work[j] = u[j] - origin[j]
-    for m in range(offset(products.shape[0])):
-        work[n + m] = work[products[m, 0]] * work[products[m, 1]]
-    forward(layer, offset(0), inputs, hidden, work, offset(0), inputs)
+    _write_arguments(kernel, u, n, inputs, hidden, work)
     for k in range(hidden):
         work[inputs + k] = slope(activation, work[inputs + k])
     for i in range(offset(constants.size)):

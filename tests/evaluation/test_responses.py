@@ -9,7 +9,7 @@ from flexsurr.evaluation.responses import (
     response_table,
 )
 from flexsurr.evaluation.scores import long_response_errors, long_responses
-from flexsurr.evaluation.validation import VALIDATION_COLUMNS, validation_table
+from flexsurr.evaluation.validation import INTERVALS, VALIDATION_COLUMNS, validation_table
 from flexsurr.surrogates import compiled
 
 
@@ -76,6 +76,8 @@ def test_full_and_reduced_order_respond_alike_and_the_dropped_term_shows(study, 
     assert list(table.columns) == list(VALIDATION_COLUMNS)
     z = table.pivot_table(index="t_s", columns=["variant", "model"], values="tip_z_m")
     assert z.notna().all(axis=None)
+    assert z.index.size == INTERVALS + 1
+    assert z.index.max() == study.evaluation.validation_duration_s
     peak = z.abs().max().max()
     reduction = (z["hamiltonian", "fom"] - z["hamiltonian", "rom"]).abs().max()
     dropping = (z["hamiltonian", "rom"] - z["as_printed", "rom"]).abs().max()
