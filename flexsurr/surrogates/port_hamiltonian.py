@@ -133,6 +133,7 @@ class PortHamiltonian(Surrogate):
         return count, states[:r], states[r:], self.scaling.rates(count)[:r]
 
 
+# Each kernel solves M q̇ = p in lines of its own: as a function, inlined, they slowed two kernels by 15 %.
 @njit(cache=True, **OPTIONS)
 def write_kinetic_adjoint(rates, r, work, adjoint):
     """∂/∂M of ½ q̇ᵀ M q̇ by the packed entries of M, at `adjoint`; `rates` begins with q̇ (r,)."""
